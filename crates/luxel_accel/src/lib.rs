@@ -1,0 +1,40 @@
+//! Builders and validators of every acceleration structure: slices in, node arrays out.
+//!
+//! | structure | builder | records |
+//! |---|---|---|
+//! | mesh BVH | [`build_mesh`] over [`build_bvh`] | [`BvhNode`](luxel_flat::BvhNode), [`Triangle`](luxel_flat::Triangle) |
+//! | TLAS | [`build_tlas`] | [`BvhNode`](luxel_flat::BvhNode) |
+//! | sphere octree | [`SphereOctree`], edited in place | [`OctreeNode`](luxel_flat::OctreeNode) |
+//! | voxel octree | [`build_svo`] | [`SvoNode`](luxel_flat::SvoNode) |
+//!
+//! Exactness rule: a stored box is the exact union (component-wise minimum and maximum) of the outset boxes
+//! that `luxel_geom` gives its primitives. Parents therefore contain their children exactly, and the interval of
+//! a parent contains the intervals of its children (see [`luxel_geom::aabb`]): an accelerated ray meets what a
+//! ray tested against every primitive meets, bit for bit, whatever the shape of the tree.
+//!
+//! Every builder is deterministic: its result depends on its input alone, not on the number of threads.
+//!
+//! ```
+//! use glam::Vec3;
+//! use luxel_accel::{BvhOptions, build_mesh};
+//!
+//! let positions = [Vec3::ZERO, Vec3::X, Vec3::Y];
+//! let mesh = build_mesh(&positions, &[[0, 1, 2]], &[7], &BvhOptions::default())?;
+//! assert_eq!(mesh.nodes.len(), 1);
+//! assert_eq!(mesh.triangles[0].id, 7);
+//! mesh.validate()?;
+//! # Ok::<(), luxel_accel::AccelError>(())
+//! ```
+mod bvh;
+mod error;
+mod mesh;
+mod octree;
+mod svo;
+mod tlas;
+
+pub use bvh::{Bvh, BvhOptions, MAX_BVH_DEPTH, build_bvh, depth};
+pub use error::AccelError;
+pub use mesh::{MeshBvh, build_mesh};
+pub use octree::{MIN_SPHERES, OctreeWork, RootCell, SphereOctree, validate_octree};
+pub use svo::{Svo, SvoVoxel, build_svo};
+pub use tlas::{build_tlas, validate_tlas};

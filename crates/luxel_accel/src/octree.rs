@@ -1,0 +1,190 @@
+//! The sphere cloud's octree: loose, lazy, edited in place.
+//!
+//! Theory: loose octrees, Ulrich 2000, "Loose Octrees" (Game Programming Gems). A sphere belongs to exactly one
+//! node: the deepest whose cell its centre lies in and whose edge is at least its diameter. So no sphere is
+//! listed twice, and nothing depends on how a sphere overlaps a cell. Deviations: nodes carry tight boxes
+//! instead of enlarged cells, so that results are exact whatever the tree's shape; and the tree is lazy: a node
+//! is subdivided only when it holds more than [`MIN_SPHERES`] spheres that could go deeper.
+//!
+//! A centre exactly on a dividing plane belongs to the upper half. A sphere whose centre lies outside the root
+//! cell stays at the root.
+//!
+//! Invariants, checked by [`SphereOctree::validate`]:
+//! node 0 is the root and always exists; children stand in blocks of eight; a block exists only while it holds
+//! a sphere; chains are acyclic and hold every sphere once; boxes, counts and masks are those of the content.
+//! The shape of an edited tree may differ from a fresh one's, never what a ray meets.
+mod cell;
+mod edit;
+mod refit;
+mod structure;
+mod validate;
+
+use glam::Vec3;
+use luxel_flat::{FAR, Heap, NONE, OctreeNode, SphereRecord};
+use luxel_geom::{Aabb, sphere};
+
+use crate::AccelError;
+pub use cell::RootCell;
+pub use validate::validate_octree;
+
+/// A node is subdivided when more spheres than this could go deeper.
+pub const MIN_SPHERES: usize = 8;
+
+/// What the edits of an octree have cost since it was made: evidence that an edit rebuilt nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OctreeWork {
+    /// Nodes descended through, written, or read for the box of their parent.
+    pub nodes_touched: u64,
+    /// Spheres linked, unlinked, or looked at on the way along a chain.
+    pub spheres_touched: u64,
+    /// Blocks of eight children taken.
+    pub blocks_allocated: u64,
+    /// Blocks of eight children given back.
+    pub blocks_freed: u64,
+}
+
+/// An octree over spheres in slots; see the module's text.
+///
+/// ```
+/// use glam::Vec3;
+/// use luxel_accel::{RootCell, SphereOctree};
+/// use luxel_flat::SphereRecord;
+///
+/// let mut octree = SphereOctree::new(RootCell { center: Vec3::ZERO, half_extent: 8.0 });
+/// let sphere = SphereRecord { center: [1.0, 2.0, 3.0], radius: 0.5, ..Default::default() };
+/// octree.insert(0, sphere, 1)?;
+/// octree.update(0, Vec3::ZERO, 0.25, 2)?;
+/// assert_eq!(octree.nodes().as_slice()[0].subtree_count, 1);
+/// octree.validate()?;
+/// # Ok::<(), luxel_accel::AccelError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct SphereOctree {
+    nodes: Heap<OctreeNode>,
+    spheres: Heap<SphereRecord>,
+    /// First nodes of unused blocks.
+    free_blocks: Vec<u32>,
+    root: RootCell,
+    work: OctreeWork,
+}
+
+impl SphereOctree {
+    /// An octree without spheres.
+    pub fn new(root: RootCell) -> Self {
+        Self {
+            nodes: Heap::from_records(vec![empty_node(NONE)], 0),
+            spheres: Heap::default(),
+            free_blocks: Vec::new(),
+            root,
+            work: OctreeWork::default(),
+        }
+    }
+
+    /// An octree over spheres given as (slot, record), built in one go.
+    ///
+    /// # Errors
+    /// [`AccelError::BadSphere`], [`AccelError::SlotTaken`] if two records name one slot.
+    pub fn build(
+        root: RootCell,
+        spheres: &[(u32, SphereRecord)],
+        revision: u64,
+    ) -> Result<Self, AccelError> {
+        let mut octree = Self::new(root);
+        for &(slot, record) in spheres {
+            octree.check_free(slot)?;
+            check_sphere(slot, record.center.into(), record.radius)?;
+            octree.store(slot, record, revision);
+            octree.link(0, slot, revision);
+        }
+        octree.grow_whole(revision);
+        Ok(octree)
+    }
+
+    /// The nodes; clone the heap to publish them.
+    pub fn nodes(&self) -> &Heap<OctreeNode> {
+        &self.nodes
+    }
+
+    /// The spheres by slot; clone the heap to publish them.
+    pub fn spheres(&self) -> &Heap<SphereRecord> {
+        &self.spheres
+    }
+
+    /// The cell of the root.
+    pub fn root(&self) -> RootCell {
+        self.root
+    }
+
+    /// Number of spheres.
+    pub fn len(&self) -> u32 {
+        self.node(0).subtree_count
+    }
+
+    /// True if there is no sphere.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Union of the spheres' boxes: a function of the content alone. Empty without spheres.
+    pub fn bounds(&self) -> Aabb<f32> {
+        node_bounds(self.node(0))
+    }
+
+    /// What has been done so far.
+    pub fn work(&self) -> OctreeWork {
+        self.work
+    }
+
+    fn node(&self, node: u32) -> &OctreeNode {
+        &self.nodes.as_slice()[node as usize]
+    }
+
+    fn sphere(&self, slot: u32) -> &SphereRecord {
+        &self.spheres.as_slice()[slot as usize]
+    }
+
+    /// The sphere in a slot.
+    fn occupied(&self, slot: u32) -> Result<SphereRecord, AccelError> {
+        let record = self.spheres.as_slice().get(slot as usize).filter(|s| s.radius > 0.0);
+        record.copied().ok_or(AccelError::SlotEmpty { slot })
+    }
+
+    fn check_free(&self, slot: u32) -> Result<(), AccelError> {
+        if self.occupied(slot).is_ok() { Err(AccelError::SlotTaken { slot }) } else { Ok(()) }
+    }
+}
+
+/// A node without spheres and children.
+fn empty_node(parent: u32) -> OctreeNode {
+    let bounds = Aabb::<f32>::empty();
+    OctreeNode {
+        lo: bounds.lo.into(),
+        first_child: NONE,
+        hi: bounds.hi.into(),
+        first_sphere: NONE,
+        sphere_count: 0,
+        child_mask: 0,
+        parent,
+        subtree_count: 0,
+    }
+}
+
+/// The record of a slot without a sphere.
+const FREE_SPHERE: SphereRecord =
+    SphereRecord { center: [0.0; 3], radius: 0.0, material: 0, stable_id: 0, next: NONE, node: NONE };
+
+fn node_bounds(node: &OctreeNode) -> Aabb<f32> {
+    Aabb { lo: node.lo.into(), hi: node.hi.into() }
+}
+
+fn sphere_bounds(record: &SphereRecord) -> Aabb<f32> {
+    sphere::bounds(Vec3::from(record.center), record.radius)
+}
+
+/// Refuses spheres whose box would not be finite or not hold them.
+fn check_sphere(slot: u32, center: Vec3, radius: f32) -> Result<(), AccelError> {
+    let limit = Vec3::splat(FAR);
+    let bounds = sphere::bounds::<f32>(center, radius);
+    let is_good = radius > 0.0 && bounds.lo.cmpgt(-limit).all() && bounds.hi.cmplt(limit).all();
+    if is_good { Ok(()) } else { Err(AccelError::BadSphere { slot }) }
+}

@@ -1,0 +1,61 @@
+//! What baking did, counted since the baker was made: how a test knows what an edit rebuilt.
+use bevy_ecs::prelude::Resource;
+
+/// Declares the counters: name and meaning.
+macro_rules! counters {
+    ($($(#[doc = $doc:literal])* $name:ident,)*) => {
+        /// Work done by all runs so far; only ever grows.
+        #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+        pub struct BakeCounters { $($(#[doc = $doc])* pub $name: u64,)* }
+
+        impl BakeCounters {
+            /// Work done since an earlier reading.
+            #[must_use]
+            pub fn since(&self, earlier: &Self) -> Self {
+                Self { $($name: self.$name - earlier.$name,)* }
+            }
+
+            /// Name and count of every counter.
+            pub fn iter(&self) -> impl Iterator<Item = (&'static str, u64)> {
+                [$((stringify!($name), self.$name),)*].into_iter()
+            }
+        }
+    };
+}
+
+counters! {
+    /// `GlobalTransform`s that got a new value.
+    transforms_propagated,
+    /// Material records that got a new value.
+    materials_written,
+    /// Material parameters that got a new value.
+    params_written,
+    /// Mesh BVHs built.
+    blas_built,
+    /// Mesh BVHs given up because nothing uses their mesh any more.
+    blas_freed,
+    /// Voxel octrees built.
+    svo_built,
+    /// Voxel octrees given up because nothing uses their volume any more.
+    svo_freed,
+    /// Spheres put into the octree, one at a time.
+    octree_inserts,
+    /// Spheres taken out of the octree.
+    octree_removes,
+    /// Spheres moved, resized or given another material slot inside the octree.
+    octree_updates,
+    /// Octrees built anew from all spheres, because the cloud's anchor or root cell changed.
+    octree_rebuilds,
+    /// Octree nodes written.
+    octree_nodes_touched,
+    /// Moves of tracer space's origin; each rewrites every instance.
+    anchors_moved,
+    /// Instance records that got a new value.
+    instances_written,
+    /// TLAS builds.
+    tlas_builds,
+    /// Changes of the set of features.
+    features_changed,
+    /// Flat scenes published.
+    publishes,
+}

@@ -1,0 +1,126 @@
+//! What the systems write down while they work: the revision of the run, work done, complaints.
+//!
+//! Complaints are state, not events: each has a place (entity and topic), is looked at again whenever the entity
+//! is touched, and goes away with its cause.
+use std::collections::BTreeMap;
+use std::fmt;
+
+use bevy_ecs::prelude::{Entity, Res, ResMut, Resource};
+use bevy_ecs::system::SystemParam;
+
+use crate::{BakeCounters, BakeError};
+
+/// The number that this run stamps what it writes with. Grows with every run.
+#[derive(Resource, Default)]
+pub(crate) struct Revision(pub u64);
+
+/// What a complaint is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Topic {
+    Hierarchy,
+    Material,
+    Sphere,
+    SphereScale,
+    Mesh,
+    MeshInstance,
+    Volume,
+    VolumeInstance,
+}
+
+/// Why an object of the world is not in the picture although it is visible.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Disabled {
+    /// Its transform holds a NaN or an infinity.
+    NotFinite,
+    /// Its transform has no inverse: a scale of zero, or axes in one plane.
+    Singular,
+    /// It is farther away, larger or smaller than single precision can handle: beyond 2^±60 metres.
+    OutOfRange,
+    /// A sphere whose radius is not a positive number.
+    BadRadius,
+    /// Its asset holds no primitive.
+    Empty,
+}
+
+impl fmt::Display for Disabled {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "its transform is not finite",
+            Self::Singular => "its transform has no inverse",
+            Self::OutOfRange => "it is too far away, too large or too small for single precision",
+            Self::BadRadius => "its radius is not a positive number",
+            Self::Empty => "there is nothing in it",
+        })
+    }
+}
+
+/// Something that is drawn otherwise than the scene says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BakeWarning {
+    /// An object is left out.
+    Disabled {
+        /// The entity.
+        entity: String,
+        /// Why.
+        reason: Disabled,
+    },
+    /// A sphere under a non-uniform scale is drawn as a sphere of the largest axis.
+    NonUniformSphere {
+        /// The entity.
+        entity: String,
+    },
+}
+
+impl fmt::Display for BakeWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Disabled { entity, reason } => write!(f, "{entity} is not shown: {reason}"),
+            Self::NonUniformSphere { entity } => {
+                write!(f, "{entity} is scaled differently along its axes; it is drawn as a sphere of the largest")
+            }
+        }
+    }
+}
+
+/// Complaints by place.
+#[derive(Resource, Default)]
+pub(crate) struct Complaints {
+    pub errors: BTreeMap<(Entity, Topic), BakeError>,
+    pub warnings: BTreeMap<(Entity, Topic), BakeWarning>,
+}
+
+/// What every system needs in order to write.
+#[derive(SystemParam)]
+pub(crate) struct Journal<'w> {
+    revision: Res<'w, Revision>,
+    pub counters: ResMut<'w, BakeCounters>,
+    complaints: ResMut<'w, Complaints>,
+}
+
+impl Journal<'_> {
+    /// The stamp of this run.
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision.0
+    }
+
+    /// States what is wrong at a place, or that nothing is.
+    pub(crate) fn error(&mut self, entity: Entity, topic: Topic, error: Option<BakeError>) {
+        match error {
+            Some(error) => _ = self.complaints.errors.insert((entity, topic), error),
+            None => _ = self.complaints.errors.remove(&(entity, topic)),
+        }
+    }
+
+    /// States what is odd at a place, or that nothing is. Said aloud when it is new.
+    pub(crate) fn warning(&mut self, entity: Entity, topic: Topic, warning: Option<BakeWarning>) {
+        let place = (entity, topic);
+        let Some(warning) = warning else {
+            self.complaints.warnings.remove(&place);
+            return;
+        };
+        if self.complaints.warnings.get(&place) != Some(&warning) {
+            tracing::warn!("{warning}");
+            self.complaints.warnings.insert(place, warning);
+        }
+    }
+}

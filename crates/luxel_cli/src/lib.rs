@@ -1,0 +1,1 @@
+//! Arguments to engine to files

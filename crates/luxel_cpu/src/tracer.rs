@@ -1,0 +1,190 @@
+//! The CPU backend: slices of pixels on every core, one sample per pixel and pass.
+//!
+//! A pixel's samples are added in order by one thread at a time, so the film does not depend on the number of
+//! threads nor on how the work was cut.
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use luxel_film::accumulate::add_sample;
+use luxel_film::tracer::{
+    Backend, BackendFacts, FilmKey, PassTime, Progress, TraceError, TraceRequest, TraceStats, Tracer,
+};
+use luxel_film::Film;
+use luxel_flat::{Aov, Counter, Counters, Feature, FeatureSet, FilmPixel, FlatScene};
+use luxel_geom::Vector;
+use rayon::prelude::*;
+
+use crate::{PathState, camera, first_hit, shade, traverse};
+
+/// Pixels between two looks at the clock.
+const SLICE_PIXELS: usize = 16 * 1024;
+/// Pixels that one task takes.
+const CHUNK_PIXELS: usize = 128;
+
+/// Path tracing on the CPU in single precision.
+#[derive(Default)]
+pub struct CpuTracer {
+    job: Option<Job>,
+}
+
+/// A request and what has been done of it.
+struct Job {
+    request: TraceRequest,
+    key: FilmKey,
+    film: Film,
+    /// Sample that is being added.
+    sample: u32,
+    /// First pixel that still lacks it.
+    next_pixel: usize,
+    counters: Counters,
+    busy: Duration,
+    slices: u64,
+}
+
+impl CpuTracer {
+    /// A tracer without a scene.
+    pub fn new() -> Self {
+        Self::default()
+    }
+}
+
+impl Tracer for CpuTracer {
+    fn facts(&self) -> BackendFacts {
+        let threads = rayon::current_num_threads();
+        BackendFacts { backend: Backend::Cpu, device: format!("{threads} threads"), driver: String::new(), threads }
+    }
+
+    fn set_scene(&mut self, request: TraceRequest) -> Result<(), TraceError> {
+        let key = request.key();
+        if self.job.as_ref().is_none_or(|job| job.key != key) {
+            self.job = Some(Job::new(request, key));
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, budget_secs: f64, until_samples: u32) -> Result<Progress, TraceError> {
+        let job = self.job.as_mut().ok_or_else(no_scene)?;
+        let start = Instant::now();
+        while job.sample < until_samples {
+            job.trace_slice();
+            if start.elapsed().as_secs_f64() >= budget_secs {
+                break;
+            }
+        }
+        job.busy += start.elapsed();
+        Ok(job.progress())
+    }
+
+    fn film(&mut self) -> Result<Film, TraceError> {
+        Ok(self.job.as_ref().ok_or_else(no_scene)?.film.clone())
+    }
+
+    fn stats(&self) -> TraceStats {
+        let Some(job) = &self.job else { return TraceStats::default() };
+        let trace = PassTime { label: "trace".to_owned(), secs: job.busy.as_secs_f64(), runs: job.slices };
+        TraceStats { counters: job.counters.clone(), passes: vec![trace], compile_secs: 0.0 }
+    }
+}
+
+fn no_scene() -> TraceError {
+    TraceError::Failed("the tracer was given no scene".to_owned())
+}
+
+impl Job {
+    fn new(request: TraceRequest, key: FilmKey) -> Self {
+        let mut film = Film::new(key.width, key.height);
+        film.anchor = request.scene.anchor;
+        film.aovs = request.features.has(Feature::Aovs).then(|| vec![Aov::default(); film.pixels.len()]);
+        Self {
+            film,
+            request,
+            key,
+            sample: 0,
+            next_pixel: 0,
+            counters: Counters::default(),
+            busy: Duration::ZERO,
+            slices: 0,
+        }
+    }
+
+    fn trace_slice(&mut self) {
+        let pixel_count = self.film.pixels.len();
+        let end = (self.next_pixel + SLICE_PIXELS).min(pixel_count);
+        let counters = self.trace_pixels(self.next_pixel..end);
+        self.counters.add(&counters);
+        self.slices += 1;
+        self.next_pixel = end;
+        if end == pixel_count {
+            self.next_pixel = 0;
+            self.sample += 1;
+        }
+    }
+
+    fn trace_pixels(&mut self, range: Range<usize>) -> Counters {
+        let context = Context {
+            scene: &self.request.scene,
+            features: self.request.features,
+            sample: self.sample,
+        };
+        let chunks = self.film.pixels[range.clone()].par_chunks_mut(CHUNK_PIXELS);
+        let first = |chunk: usize| (range.start + chunk * CHUNK_PIXELS) as u32;
+        match &mut self.film.aovs {
+            Some(aovs) => chunks
+                .zip(aovs[range.clone()].par_chunks_mut(CHUNK_PIXELS))
+                .enumerate()
+                .map(|(i, (pixels, aovs))| context.trace_chunk(first(i), pixels, Some(aovs)))
+                .reduce(Counters::default, sum),
+            None => chunks
+                .enumerate()
+                .map(|(i, pixels)| context.trace_chunk(first(i), pixels, None))
+                .reduce(Counters::default, sum),
+        }
+    }
+
+    fn progress(&self) -> Progress {
+        let fraction = self.next_pixel as f64 / self.film.pixels.len().max(1) as f64;
+        Progress { samples: self.sample, fraction }
+    }
+}
+
+fn sum(mut a: Counters, b: Counters) -> Counters {
+    a.add(&b);
+    a
+}
+
+/// What is the same for every path of a slice.
+struct Context<'a> {
+    scene: &'a FlatScene,
+    features: FeatureSet,
+    sample: u32,
+}
+
+impl Context<'_> {
+    fn trace_chunk(&self, first_pixel: u32, pixels: &mut [FilmPixel], mut aovs: Option<&mut [Aov]>) -> Counters {
+        let mut counters = Counters::default();
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            let aov = aovs.as_deref_mut().map(|aovs| &mut aovs[i]);
+            let radiance = self.trace_path(first_pixel + i as u32, aov, &mut counters);
+            let dropped = pixel.dropped;
+            add_sample(pixel, radiance.to_array());
+            counters[Counter::Samples] += 1;
+            counters[Counter::NonFiniteSamples] += u64::from(pixel.dropped - dropped);
+        }
+        counters
+    }
+
+    fn trace_path(&self, pixel: u32, mut aov: Option<&mut Aov>, counters: &mut Counters) -> glam::Vec3 {
+        let mut path: PathState<f32> =
+            camera::generate(&self.scene.params, self.features, pixel, self.sample, counters);
+        while path.alive {
+            let before = aov.is_some().then(|| counters.clone());
+            let hit = traverse::intersect(self.scene, &path.ray, &path.exclusion, counters);
+            if let (Some(aov), Some(before)) = (aov.take(), before) {
+                let steps = first_hit::steps(&before, counters);
+                first_hit::record(self.scene, &path.ray, self.sample, hit.as_ref(), steps, aov, counters);
+            }
+            shade::shade(self.scene, self.features, &mut path, hit.as_ref(), counters);
+        }
+        path.radiance.to_vec3()
+    }
+}

@@ -1,0 +1,45 @@
+//! Closest hit in the scene: the TLAS by skip pointers.
+//!
+//! No stack, so no depth can overflow one: a missed node is left by its `skip`, everything else is visited in
+//! depth-first order. A node is passed over only if its entry lies beyond the best hit so far.
+use luxel_flat::{BvhNode, Counter, Counters, FlatScene};
+use luxel_geom::{Aabb, Ray, Real, SlabRay, Vector};
+
+use crate::{Exclusion, Hit, instance};
+
+/// The closest hit with `t_min < t <= t_max`; ties by stable ids. An invalid ray hits nothing.
+pub fn intersect<R: Real>(
+    scene: &FlatScene,
+    ray: &Ray<R>,
+    exclusion: &Exclusion,
+    counters: &mut Counters,
+) -> Option<Hit<R>> {
+    if !ray.is_valid() {
+        return None;
+    }
+    let slab_ray = SlabRay::new(ray);
+    let nodes = scene.tlas();
+    let mut best: Option<Hit<R>> = None;
+    let mut index = 0;
+    while let Some(node) = nodes.get(index) {
+        counters[Counter::TlasNodes] += 1;
+        let limit = best.map_or(ray.t_max, |hit| hit.on.t);
+        if !node_box(node).interval(&slab_ray).overlaps(ray.t_min, limit) {
+            index = node.skip as usize;
+            continue;
+        }
+        if node.is_leaf() {
+            let slot = node.primitives().0;
+            let hit = instance::intersect(scene, slot, &slab_ray, limit, exclusion, counters);
+            best = hit.filter(|hit| hit.precedes(&best)).or(best);
+        }
+        index += 1;
+    }
+    best
+}
+
+/// The box of a BVH node.
+#[inline]
+pub fn node_box<R: Real>(node: &BvhNode) -> Aabb<R> {
+    Aabb { lo: R::Vec3::from_array(node.lo), hi: R::Vec3::from_array(node.hi) }
+}

@@ -1,0 +1,116 @@
+//! Closest hit in a voxel volume: its sparse octree, front to back by the ray's octant.
+//!
+//! Boxes come from integer cells, so that a node's box contains its children's exactly. The stack holds one
+//! node per level; which sibling is next follows from the cell's low bits.
+use luxel_flat::{Counter, Counters, FlatScene, Instance, MAX_SVO_DEPTH, SvoNode};
+use luxel_geom::{Real, SlabRay, voxel};
+
+use crate::Exclusion;
+use crate::cloud::octant;
+use crate::hit::PrimitiveHit;
+
+/// The closest voxel along a ray in the volume's space.
+pub fn intersect<R: Real>(
+    scene: &FlatScene,
+    instance: &Instance,
+    ray: &SlabRay<R>,
+    exclusion: &Exclusion,
+    counters: &mut Counters,
+) -> Option<PrimitiveHit<R>> {
+    let nodes = &scene.svo_nodes.as_slice()[instance.node_first as usize..];
+    let octant = octant(ray);
+    let mut ray = *ray;
+    let mut best: Option<PrimitiveHit<R>> = None;
+    let mut stack = [0u32; MAX_SVO_DEPTH as usize + 1];
+    let (mut depth, mut cell, mut rank) = (0u32, [0u32; 3], 0);
+    if instance.node_count == 0 || !enters(cell, 1 << instance.levels, &ray, counters) {
+        return None;
+    }
+    loop {
+        let node = &nodes[stack[depth as usize] as usize];
+        if node.child_mask == 0 {
+            counters[Counter::VoxelTests] += 1;
+            let slot = instance.node_first + stack[depth as usize];
+            if let Some(hit) = intersect_voxel(node, slot, cell, instance, &ray, exclusion)
+                && hit.precedes(&best)
+            {
+                ray.t_max = hit.t;
+                best = Some(hit);
+            }
+        }
+        let child_edge = (1 << (instance.levels - depth)) / 2;
+        if let Some(child) = next_child(node, cell, child_edge, rank, octant, &ray, counters) {
+            depth += 1;
+            stack[depth as usize] = child_node(node, child);
+            cell = child_cell(cell, child);
+            rank = 0;
+        } else if depth == 0 {
+            return best;
+        } else {
+            let child = cell[0] & 1 | (cell[1] & 1) << 1 | (cell[2] & 1) << 2;
+            rank = (child ^ octant) + 1;
+            cell = cell.map(|c| c >> 1);
+            depth -= 1;
+        }
+    }
+}
+
+/// Tests one solid voxel.
+#[inline]
+pub fn intersect_voxel<R: Real>(
+    node: &SvoNode,
+    slot: u32,
+    cell: [u32; 3],
+    instance: &Instance,
+    ray: &SlabRay<R>,
+    exclusion: &Exclusion,
+) -> Option<PrimitiveHit<R>> {
+    let primitive = voxel_id(cell, instance.levels);
+    let hit = voxel::intersect(ray, cell, exclusion.of(primitive))?;
+    Some(PrimitiveHit {
+        t: hit.t,
+        uv: [R::from_f64(f64::from(hit.face)), R::ZERO],
+        slot,
+        primitive,
+        material: instance.material_first + node.material,
+    })
+}
+
+/// Stable id of a voxel: its cell, x lowest. At 2048³ the top bit of z is lost; ids only break ties.
+#[inline]
+pub fn voxel_id(cell: [u32; 3], levels: u32) -> u32 {
+    cell[0] | cell[1] << levels | cell[2] << (2 * levels)
+}
+
+/// The node of an existing child, relative to the volume.
+#[inline]
+pub fn child_node(node: &SvoNode, child: u32) -> u32 {
+    node.first_child + (node.child_mask & ((1 << child) - 1)).count_ones()
+}
+
+/// The cell of a child, one level down.
+#[inline]
+pub fn child_cell(cell: [u32; 3], child: u32) -> [u32; 3] {
+    [cell[0] << 1 | child & 1, cell[1] << 1 | child >> 1 & 1, cell[2] << 1 | child >> 2]
+}
+
+fn enters<R: Real>(cell: [u32; 3], edge: u32, ray: &SlabRay<R>, counters: &mut Counters) -> bool {
+    counters[Counter::SvoNodes] += 1;
+    voxel::bounds::<R>(cell, edge).interval(ray).overlaps(ray.t_min, ray.t_max)
+}
+
+/// The next child that the ray enters, from `rank` on in the ray's order.
+fn next_child<R: Real>(
+    node: &SvoNode,
+    cell: [u32; 3],
+    child_edge: u32,
+    rank: u32,
+    octant: u32,
+    ray: &SlabRay<R>,
+    counters: &mut Counters,
+) -> Option<u32> {
+    (rank..8)
+        .map(|rank| rank ^ octant)
+        .filter(|child| node.child_mask & (1 << child) != 0)
+        .find(|child| enters(child_cell(cell, *child), child_edge, ray, counters))
+}

@@ -1,0 +1,1 @@
+//! Composition root: world, schedules, headless runner, backend choice, output files

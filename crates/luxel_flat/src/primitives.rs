@@ -1,0 +1,179 @@
+//! Records of the flat scene: structures, primitives, instances, materials.
+//!
+//! Indices inside a mesh or a volume are relative to its instance's `node_first` and `primitive_first`, so that
+//! an asset can stand anywhere in the heap.
+use crate::layout::shared_struct;
+
+shared_struct! {
+    /// A node of a mesh BVH or of the TLAS, in depth-first order.
+    ///
+    /// The first child of an inner node is the next record; the second is the first child's `skip`.
+    pub struct BvhNode {
+        /// Corner of smallest coordinates, outset.
+        pub lo: [f32; 3],
+        /// The node after this one's subtree; greater than this node's own index. The end of the tree for the
+        /// last subtree.
+        pub skip: u32,
+        /// Corner of largest coordinates, outset.
+        pub hi: [f32; 3],
+        /// 0 for an inner node, else `count << LEAF_COUNT_SHIFT | first` with 1 ≤ count ≤ `MAX_LEAF_SIZE`.
+        pub leaf: u32,
+    }
+}
+
+shared_struct! {
+    /// A node of the sphere octree.
+    ///
+    /// A *loose* octree: each sphere belongs to exactly one node, the deepest whose cell its centre lies in and
+    /// whose edge is at least its diameter. The box is tight around the spheres of the subtree, not the cell.
+    pub struct OctreeNode {
+        /// Corner of smallest coordinates of the subtree's spheres, outset.
+        pub lo: [f32; 3],
+        /// First of eight consecutive children (bit 0 = x, bit 1 = y, bit 2 = z upper half), or `NONE`.
+        pub first_child: u32,
+        /// Corner of largest coordinates.
+        pub hi: [f32; 3],
+        /// First sphere of this node, chained by `SphereRecord::next`, or `NONE`.
+        pub first_sphere: u32,
+        /// Length of the chain.
+        pub sphere_count: u32,
+        /// Children whose subtree holds a sphere: bit i = child i.
+        pub child_mask: u32,
+        /// Parent node; `NONE` for the root.
+        pub parent: u32,
+        /// Spheres in the whole subtree.
+        pub subtree_count: u32,
+    }
+}
+
+shared_struct! {
+    /// A sphere of the sphere cloud, in the cloud's coordinates.
+    pub struct SphereRecord {
+        /// Centre.
+        pub center: [f32; 3],
+        /// Radius, positive; 0 marks a free slot.
+        pub radius: f32,
+        /// Material slot.
+        pub material: u32,
+        /// The entity's stable id: the primitive id of a hit.
+        pub stable_id: u32,
+        /// Next sphere of the same octree node, or `NONE`.
+        pub next: u32,
+        /// The octree node that holds this sphere, or `NONE`.
+        pub node: u32,
+    }
+}
+
+shared_struct! {
+    /// A triangle of a mesh, in the mesh's coordinates, in the BVH's leaf order.
+    pub struct Triangle {
+        /// First vertex.
+        pub v0: [f32; 3],
+        /// Number of the triangle in its file: the primitive id of a hit.
+        pub id: u32,
+        /// Second vertex.
+        pub v1: [f32; 3],
+        /// Material, counted from the instance's `material_first`.
+        pub material: u32,
+        /// Third vertex.
+        pub v2: [f32; 3],
+        /// Always 0.
+        pub reserved: u32,
+    }
+}
+
+shared_struct! {
+    /// A node of a sparse voxel octree. Children stand side by side in order of their bit in `child_mask`.
+    pub struct SvoNode {
+        /// First child, relative to the volume; unused in a leaf.
+        pub first_child: u32,
+        /// Bit i = child i exists (bit 0 = x, bit 1 = y, bit 2 = z upper half); 0 in a leaf.
+        pub child_mask: u32,
+        /// Average over the solid voxels below: sRGB red, green, blue, and the solid share of the cell, 8 bits
+        /// each from the lowest.
+        pub color: u32,
+        /// Material of a leaf, counted from the instance's `material_first`.
+        pub material: u32,
+    }
+}
+
+shared_struct! {
+    /// One placed object of the TLAS: the sphere cloud, a mesh or a volume.
+    pub struct Instance {
+        /// Rows of `[M | t]` from object to tracer space.
+        pub world_from_object: [[f32; 4]; 3],
+        /// Rows of `[M | t]` from tracer to object space.
+        pub object_from_world: [[f32; 4]; 3],
+        /// Box in tracer space, smallest coordinates; equal to its TLAS leaf's.
+        pub lo: [f32; 3],
+        /// `KIND_SPHERES`, `KIND_MESH` or `KIND_VOXELS`.
+        pub kind: u32,
+        /// Box in tracer space, largest coordinates.
+        pub hi: [f32; 3],
+        /// The entity's stable id; 0 for the sphere cloud.
+        pub stable_id: u32,
+        /// First node of the octree, BVH or SVO in its heap.
+        pub node_first: u32,
+        /// Number of nodes.
+        pub node_count: u32,
+        /// First triangle (meshes).
+        pub primitive_first: u32,
+        /// Number of triangles.
+        pub primitive_count: u32,
+        /// First material slot.
+        pub material_first: u32,
+        /// Levels of the SVO below its root: the volume spans `[0, 2^levels]³` (volumes).
+        pub levels: u32,
+        /// Always 0.
+        pub reserved0: u32,
+        /// Always 0.
+        pub reserved1: u32,
+    }
+}
+
+shared_struct! {
+    /// A material: kind, flags, and where its further parameters stand.
+    pub struct MaterialRecord {
+        /// `MATERIAL_LAMBERT`, `MATERIAL_METAL` or `MATERIAL_DIELECTRIC`.
+        pub kind: u32,
+        /// `MATERIAL_EMISSIVE`.
+        pub flags: u32,
+        /// First parameter (a `vec4f` of the parameter heap).
+        pub param_first: u32,
+        /// Number of parameters.
+        pub param_count: u32,
+        /// Albedo, linear Rec.709.
+        pub color: [f32; 3],
+        /// Fuzz of a metal, index of refraction of a dielectric.
+        pub scalar: f32,
+    }
+}
+
+impl BvhNode {
+    /// True if the node holds primitives.
+    #[inline]
+    pub fn is_leaf(&self) -> bool {
+        self.leaf != 0
+    }
+
+    /// The primitives of a leaf: first and count.
+    #[inline]
+    pub fn primitives(&self) -> (u32, u32) {
+        let count = self.leaf >> crate::LEAF_COUNT_SHIFT;
+        (self.leaf & ((1 << crate::LEAF_COUNT_SHIFT) - 1), count)
+    }
+
+    /// The packed form of [`BvhNode::primitives`].
+    #[inline]
+    pub fn pack_leaf(first: u32, count: u32) -> u32 {
+        count << crate::LEAF_COUNT_SHIFT | first
+    }
+}
+
+impl Triangle {
+    /// The three vertices.
+    #[inline]
+    pub fn vertices(&self) -> [[f32; 3]; 3] {
+        [self.v0, self.v1, self.v2]
+    }
+}

@@ -1,0 +1,1 @@
+//! The render graph: nodes as systems in a bevy_ecs schedule

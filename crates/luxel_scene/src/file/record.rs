@@ -1,0 +1,190 @@
+//! A scene file as it stands on disk.
+
+use std::collections::BTreeMap;
+
+use glam::{DQuat, DVec3, EulerRot};
+use serde::{Deserialize, Serialize};
+
+use crate::assets::{AssetId, MeshSource, VolumeSource};
+use crate::components::{Camera, Name, Sphere, Transform};
+use crate::ids::StableId;
+use crate::material::Material;
+use crate::procedural::Scatter;
+use crate::resources::{Environment, RenderSettings};
+
+/// The version that is written.
+pub(super) const VERSION: u32 = 1;
+
+/// A whole scene file.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneFile {
+    pub(super) version: u32,
+    /// The next entity's id.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) next_id: Option<u32>,
+    /// The next asset's id.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) next_asset: Option<u32>,
+    #[serde(default)]
+    pub(super) environment: Environment,
+    #[serde(default)]
+    pub(super) settings: RenderSettings,
+    /// The camera entity; without it the first one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) active_camera: Option<StableId>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) meshes: BTreeMap<AssetId, MeshSource>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) volumes: BTreeMap<AssetId, VolumeSource>,
+    /// Recipes for many spheres; entities like any other once loaded.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) scatter: Vec<Scatter>,
+    #[serde(default)]
+    pub(super) entities: Vec<EntityRecord>,
+}
+
+/// One entity. Whatever is missing it does not have.
+#[derive(Clone, PartialEq, Debug, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct EntityRecord {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) id: Option<StableId>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) name: Option<Name>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) parent: Option<StableId>,
+    #[serde(skip_serializing_if = "TransformRecord::is_identity")]
+    pub(super) transform: TransformRecord,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) sphere: Option<Sphere>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) mesh: Option<AssetId>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) voxels: Option<AssetId>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) material: Option<Material>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) camera: Option<CameraRecord>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) visible: Option<bool>,
+}
+
+impl EntityRecord {
+    /// How messages call this entity.
+    pub(super) fn place(&self) -> String {
+        let id = self.id.map_or_else(|| "without id".to_owned(), |StableId(id)| id.to_string());
+        match &self.name {
+            Some(Name(name)) => format!("entity {id} \"{name}\""),
+            None => format!("entity {id}"),
+        }
+    }
+}
+
+/// A transform; of the three kinds of rotation at most one.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct TransformRecord {
+    pub(super) translation: DVec3,
+    /// A unit quaternion (x, y, z, w): what is saved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) rotation: Option<DQuat>,
+    /// For hand-written files: about X, then Y, then Z of the parent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) rotation_degrees: Option<DVec3>,
+    /// For hand-written files: the point, in the parent's space, that −Z looks at.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) look_at: Option<DVec3>,
+    pub(super) scale: DVec3,
+}
+
+impl Default for TransformRecord {
+    fn default() -> Self {
+        Self {
+            translation: DVec3::ZERO,
+            rotation: None,
+            rotation_degrees: None,
+            look_at: None,
+            scale: DVec3::ONE,
+        }
+    }
+}
+
+impl TransformRecord {
+    /// What is saved. Signs of zero are kept: an identity with a −0 in it is written out.
+    pub(super) fn of(transform: &Transform) -> Self {
+        Self {
+            translation: transform.translation,
+            rotation: Some(transform.rotation),
+            scale: transform.scale,
+            ..Self::default()
+        }
+    }
+
+    pub(super) fn transform(&self) -> Transform {
+        let looking = |target| Transform::looking_at(self.translation, target).rotation;
+        let turned = |degrees: DVec3| {
+            let [x, y, z] = degrees.to_array().map(f64::to_radians);
+            // Written right to left: X acts first.
+            DQuat::from_euler(EulerRot::ZYX, z, y, x)
+        };
+        Transform {
+            translation: self.translation,
+            rotation: self
+                .rotation
+                .or(self.rotation_degrees.map(turned))
+                .or(self.look_at.map(looking))
+                .unwrap_or(DQuat::IDENTITY),
+            scale: self.scale,
+        }
+    }
+
+    fn is_identity(&self) -> bool {
+        let bits = |t: &Transform| {
+            let (p, r, s) = (t.translation, t.rotation, t.scale);
+            [p.x, p.y, p.z, r.x, r.y, r.z, r.w, s.x, s.y, s.z].map(f64::to_bits)
+        };
+        bits(&self.transform()) == bits(&Transform::default())
+    }
+}
+
+/// A camera; its angle in radians (what is saved) or in degrees.
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct CameraRecord {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) vertical_fov: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) vertical_fov_degrees: Option<f64>,
+    pub(super) lens_radius: f64,
+    /// Without it, the point that the transform looks at is sharp, or else what is 1 m away.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) focus_distance: Option<f64>,
+}
+
+impl CameraRecord {
+    pub(super) fn of(camera: &Camera) -> Self {
+        Self {
+            vertical_fov: Some(camera.vertical_fov),
+            vertical_fov_degrees: None,
+            lens_radius: camera.lens_radius,
+            focus_distance: Some(camera.focus_distance),
+        }
+    }
+
+    pub(super) fn camera(&self, transform: &TransformRecord) -> Camera {
+        let default = Camera::default();
+        let to_target = |target: DVec3| transform.translation.distance(target);
+        Camera {
+            vertical_fov: self
+                .vertical_fov
+                .or(self.vertical_fov_degrees.map(f64::to_radians))
+                .unwrap_or(default.vertical_fov),
+            lens_radius: self.lens_radius,
+            focus_distance: self
+                .focus_distance
+                .or(transform.look_at.map(to_target))
+                .unwrap_or(default.focus_distance),
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! A bare model becomes a picture: ground, sky, lamp and a camera that shows all of it.
+//!
+//! The lamp is a sphere as large as the model: light is found by chance, so a small one would be
+//! noise for a long time.
+
+use std::path::Path;
+
+use bevy_ecs::hierarchy::ChildOf;
+use bevy_ecs::prelude::World;
+use glam::{DVec3, Vec3};
+
+use crate::assets::{Assets, MeshAsset, MeshSource, VolumeAsset, VolumeSource};
+use crate::components::{
+    ActiveCamera, Camera, MeshInstance, Name, Sphere, Transform, VoxelVolume,
+};
+use crate::error::SceneError;
+use crate::ids::spawn;
+use crate::material::Material;
+use crate::report::LoadReport;
+use crate::resources::{Environment, RenderSettings};
+
+use super::{ObjFile, VoxFile, canonical};
+
+/// The box that a model fills, Y up.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    min: DVec3,
+    max: DVec3,
+}
+
+impl Bounds {
+    fn centre(self) -> DVec3 {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Half the diagonal; never zero, for a model has a triangle or a voxel.
+    fn radius(self) -> f64 {
+        (self.max - self.min).length() * 0.5
+    }
+
+    fn corners(self) -> impl Iterator<Item = DVec3> {
+        (0..8u8).map(move |corner| {
+            let pick = |bit: u8| f64::from(corner >> bit & 1);
+            self.min + (self.max - self.min) * DVec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+}
+
+/// Fills `world` with an .obj model on a ground: a root entity, and below it one entity for every
+/// (object, material).
+pub(crate) fn load_obj_scene(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
+    let path = &canonical(path)?;
+    let file = ObjFile::read(path)?;
+    let bounds = file
+        .parts
+        .iter()
+        .filter_map(|part| part.mesh.bounds())
+        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        .map(|(min, max)| Bounds {
+            min: min.as_dvec3(),
+            max: max.as_dvec3(),
+        })
+        .ok_or_else(|| SceneError::unusable(path, "has no triangle"))?;
+    let dropped = file.dropped_line(path).into_iter().collect();
+    let root = spawn(world, (model_name(path), Transform::default()));
+    for (index, part) in (0..).zip(file.parts) {
+        let mesh = world.get_resource_or_init::<Assets>().insert_mesh(MeshAsset {
+            source: MeshSource::FilePart(path.clone(), index),
+            mesh: part.mesh,
+            dropped: file.dropped,
+        });
+        let shape = (Name(part.name), MeshInstance { mesh }, part.material);
+        spawn(world, (shape, ChildOf(root)));
+    }
+    set_the_stage(world, bounds);
+    Ok(LoadReport {
+        dropped,
+        warnings: file.warnings,
+    })
+}
+
+/// Fills `world` with a .vox model on a ground.
+pub(crate) fn load_vox_scene(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
+    let path = &canonical(path)?;
+    let file = VoxFile::read(path)?;
+    let bounds = Bounds {
+        min: DVec3::ZERO,
+        max: file.grid.size.as_dvec3(),
+    };
+    let report = LoadReport {
+        dropped: file.dropped_line(path).into_iter().collect(),
+        warnings: file.warnings,
+    };
+    let volume = world.get_resource_or_init::<Assets>().insert_volume(VolumeAsset {
+        source: VolumeSource::File(path.clone()),
+        grid: file.grid,
+    });
+    spawn(world, (model_name(path), VoxelVolume { volume }));
+    set_the_stage(world, bounds);
+    Ok(report)
+}
+
+fn model_name(path: &Path) -> Name {
+    Name(path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
+}
+
+fn set_the_stage(world: &mut World, bounds: Bounds) {
+    let radius = bounds.radius();
+    spawn_ground(world, bounds);
+    let lamp_direction = DVec3::new(-0.55, 1.0, 0.6).normalize();
+    let lamp = (
+        Name("lamp".to_owned()),
+        Transform::at(bounds.centre() + lamp_direction * 3.6 * radius),
+        Sphere { radius: 1.1 * radius },
+        Material::lamp(Vec3::new(1.0, 0.93, 0.82) * 13.0),
+    );
+    spawn(world, lamp);
+    world.insert_resource(Environment::Gradient {
+        zenith: Vec3::new(0.32, 0.42, 0.60),
+        horizon: Vec3::new(0.62, 0.67, 0.74),
+        ground: Vec3::new(0.20, 0.19, 0.18),
+    });
+    let settings = *world.get_resource_or_init::<RenderSettings>();
+    let aspect = f64::from(settings.width) / f64::from(settings.height);
+    spawn_camera(world, bounds, aspect);
+}
+
+/// A large grey square, a little below the model so that no two surfaces coincide.
+fn spawn_ground(world: &mut World, bounds: Bounds) {
+    let radius = bounds.radius();
+    let quad = MeshAsset::quad();
+    let mesh = world.get_resource_or_init::<Assets>().insert_mesh(quad);
+    let centre = bounds.centre();
+    let transform = Transform {
+        scale: DVec3::new(200.0 * radius, 1.0, 200.0 * radius),
+        ..Transform::at(DVec3::new(centre.x, bounds.min.y - radius / 1024.0, centre.z))
+    };
+    let ground = (
+        Name("ground".to_owned()),
+        transform,
+        MeshInstance { mesh },
+        Material::lambert(Vec3::splat(0.42)),
+    );
+    spawn(world, ground);
+}
+
+/// A three-quarter view from slightly above, as near as the box allows.
+fn spawn_camera(world: &mut World, bounds: Bounds, aspect: f64) {
+    let towards_camera = DVec3::new(0.62, 0.42, 1.0).normalize();
+    let vertical_fov = 32f64.to_radians();
+    let distance = fitting_distance(bounds, towards_camera, vertical_fov, aspect);
+    let eye = bounds.centre() + towards_camera * distance;
+    let camera = (
+        Name("camera".to_owned()),
+        Transform::looking_at(eye, bounds.centre()),
+        Camera {
+            vertical_fov,
+            lens_radius: 0.0,
+            focus_distance: distance,
+        },
+        ActiveCamera,
+    );
+    spawn(world, camera);
+}
+
+/// How far from the box's centre, along `towards_camera`, every corner is in the picture, with a
+/// margin of a tenth.
+fn fitting_distance(bounds: Bounds, towards_camera: DVec3, vertical_fov: f64, aspect: f64) -> f64 {
+    const MARGIN: f64 = 1.1;
+    let view = Transform::looking_at(towards_camera, DVec3::ZERO).rotation.inverse();
+    let (tan_y, tan_x) = ((vertical_fov * 0.5).tan(), (vertical_fov * 0.5).tan() * aspect);
+    bounds
+        .corners()
+        .map(|corner| {
+            let p = view * (corner - bounds.centre());
+            p.z + MARGIN * (p.x.abs() / tan_x).max(p.y.abs() / tan_y)
+        })
+        .fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_corner_is_in_the_picture_and_one_nearly_touches_its_edge() {
+        for size in [DVec3::ONE, DVec3::new(10.0, 0.1, 3.0), DVec3::new(1e-6, 1e-3, 0.0)] {
+            let bounds = Bounds { min: -size, max: size * 2.0 };
+            let towards = DVec3::new(0.62, 0.42, 1.0).normalize();
+            let (fov, aspect) = (0.6, 1.5);
+            let distance = fitting_distance(bounds, towards, fov, aspect);
+            let camera = Transform::looking_at(bounds.centre() + towards * distance, bounds.centre());
+            let edge = bounds
+                .corners()
+                .map(|corner| {
+                    let p = camera.affine().inverse().transform_point3(corner);
+                    assert!(p.z < 0.0);
+                    let tan = (fov * 0.5).tan();
+                    (p.x / -p.z / (tan * aspect)).abs().max((p.y / -p.z / tan).abs())
+                })
+                .fold(0.0, f64::max);
+            assert!((0.85..1.0).contains(&edge), "{edge}");
+        }
+    }
+}

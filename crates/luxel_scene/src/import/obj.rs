@@ -1,0 +1,182 @@
+//! Wavefront .obj: triangles by (object, material).
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+
+use crate::assets::{Dropped, TriangleMesh};
+use crate::error::SceneError;
+use crate::material::Material;
+
+use super::obj_text::{CleanObj, clean};
+use super::{file_name, mtl, read_model};
+
+/// One object of an .obj file in one material.
+#[derive(Debug)]
+pub(crate) struct ObjPart {
+    /// The object's (or group's) name, and the material's if there is one.
+    pub(crate) name: String,
+    /// From the .mtl file; the default material if there is none.
+    pub(crate) material: Material,
+    /// At least one triangle.
+    pub(crate) mesh: TriangleMesh,
+}
+
+/// A whole .obj file.
+#[derive(Debug)]
+pub(crate) struct ObjFile {
+    /// In the order of their first triangles; at least one.
+    pub(crate) parts: Vec<ObjPart>,
+    /// Triangles in the file.
+    pub(crate) triangles: u32,
+    /// Triangles left out.
+    pub(crate) dropped: Dropped,
+    /// One line each: missing or damaged material files.
+    pub(crate) warnings: Vec<String>,
+}
+
+impl ObjFile {
+    /// Reads the file at `path` and the material files beside it.
+    ///
+    /// # Errors
+    /// A file that cannot be read, a line that cannot be understood, or no triangle that is any
+    /// good. A material file never fails: what it lacks is a warning.
+    pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
+        let bytes = read_model(path)?;
+        if bytes.starts_with(&[0xFE, 0xFF]) || bytes.starts_with(&[0xFF, 0xFE]) {
+            return Err(SceneError::model(path, 1, "is UTF-16; save it as UTF-8"));
+        }
+        // Only names can be other than ASCII, and a name may be mended.
+        let text = String::from_utf8_lossy(&bytes);
+        let clean = clean(path, text.trim_start_matches('\u{FEFF}'))?;
+        if clean.triangle_ids.is_empty() {
+            return Err(nothing_left(path, &clean));
+        }
+        let mut warnings = Vec::new();
+        let library = mtl::read_libraries(path, &clean, &mut warnings);
+        Self::from_clean(path, clean, &library, warnings)
+    }
+
+    fn from_clean(
+        path: &Path,
+        clean: CleanObj,
+        library: &mtl::Library,
+        warnings: Vec<String>,
+    ) -> Result<Self, SceneError> {
+        let options = tobj::LoadOptions {
+            single_index: true,
+            triangulate: true,
+            ignore_points: true,
+            ignore_lines: true,
+        };
+        // One made-up library file at the top: the real ones are read, and their absence reported,
+        // already.
+        let text = format!("mtllib all\n{}", clean.text);
+        let (models, _) = tobj::load_obj_buf(&mut text.as_bytes(), &options, |_: &Path| {
+            Ok((Vec::new(), library.indices()))
+        })
+        .map_err(|error| SceneError::unusable(path, error.to_string()))?;
+        Ok(Self {
+            parts: group(models, &clean.triangle_ids, library),
+            triangles: clean.triangles,
+            dropped: clean.dropped,
+            warnings,
+        })
+    }
+
+    /// All parts as one mesh, triangles in the file's order.
+    pub(crate) fn whole(&self) -> TriangleMesh {
+        let mut whole = TriangleMesh::default();
+        for part in &self.parts {
+            append(&mut whole, &part.mesh);
+        }
+        let mut numbered: Vec<_> = whole.triangle_ids.into_iter().zip(whole.triangles).collect();
+        numbered.sort_unstable();
+        (whole.triangle_ids, whole.triangles) = numbered.into_iter().unzip();
+        whole
+    }
+
+    /// The line about triangles left out, if any were.
+    pub(crate) fn dropped_line(&self, path: &Path) -> Option<String> {
+        (self.dropped.total() > 0).then(|| {
+            format!(
+                "{}: dropped {} of {} triangles ({})",
+                file_name(path),
+                self.dropped.total(),
+                self.triangles,
+                self.dropped
+            )
+        })
+    }
+}
+
+/// `tobj`'s models, those with the same name and material joined.
+fn group(models: Vec<tobj::Model>, ids: &[u32], library: &mtl::Library) -> Vec<ObjPart> {
+    let mut parts: Vec<ObjPart> = Vec::new();
+    let mut found: HashMap<(String, Option<usize>), usize> = HashMap::new();
+    let mut ids = ids.iter().copied();
+    for tobj::Model { mesh, name } in models {
+        if mesh.indices.is_empty() {
+            continue;
+        }
+        let material_id = mesh.material_id;
+        let index = *found.entry((name, material_id)).or_insert_with_key(|(name, _)| {
+            parts.push(ObjPart {
+                name: library.part_name(name, material_id),
+                material: library.material(material_id),
+                mesh: TriangleMesh::default(),
+            });
+            parts.len() - 1
+        });
+        append(&mut parts[index].mesh, &triangles(&mesh, &mut ids));
+    }
+    parts
+}
+
+fn triangles(mesh: &tobj::Mesh, ids: &mut impl Iterator<Item = u32>) -> TriangleMesh {
+    let (corners, _) = mesh.indices.as_chunks();
+    let (positions, _) = mesh.positions.as_chunks();
+    TriangleMesh {
+        positions: positions.iter().copied().map(Vec3::from_array).collect(),
+        triangles: corners.to_vec(),
+        triangle_ids: ids.take(corners.len()).collect(),
+    }
+}
+
+fn append(mesh: &mut TriangleMesh, more: &TriangleMesh) {
+    let first = mesh.positions.len() as u32;
+    mesh.positions.extend(&more.positions);
+    mesh.triangles
+        .extend(more.triangles.iter().map(|corners| corners.map(|index| index + first)));
+    mesh.triangle_ids.extend(&more.triangle_ids);
+}
+
+fn nothing_left(path: &Path, clean: &CleanObj) -> SceneError {
+    let message = match clean.triangles {
+        0 => "has no triangle".to_owned(),
+        n => format!("none of its {n} triangles can be used ({})", clean.dropped),
+    };
+    SceneError::unusable(path, message)
+}
+
+/// Every .obj file is read once per scene, however many meshes come from it.
+#[derive(Debug, Default)]
+pub(crate) struct ObjCache(HashMap<PathBuf, ObjFile>);
+
+impl ObjCache {
+    /// The file at `path`, read now or before.
+    pub(crate) fn get(&mut self, path: &Path) -> Result<&ObjFile, SceneError> {
+        if !self.0.contains_key(path) {
+            self.0.insert(path.to_owned(), ObjFile::read(path)?);
+        }
+        self.0
+            .get(path)
+            .ok_or_else(|| SceneError::unusable(path, "was not read"))
+    }
+
+    /// All files that were read.
+    pub(crate) fn files(&self) -> impl Iterator<Item = (&Path, &ObjFile)> {
+        self.0.iter().map(|(path, file)| (path.as_path(), file))
+    }
+}

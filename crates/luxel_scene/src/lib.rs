@@ -1,0 +1,124 @@
+//! What a scene is: components, assets, import and scene files.
+//!
+//! A scene is a [`bevy_ecs`] world. Entities are spheres, meshes, voxel volumes, cameras and groups;
+//! resources are the light around them, the settings of the picture, and the geometry they share.
+//!
+//! ```
+//! use bevy_ecs::prelude::*;
+//! use glam::{DVec3, Vec3};
+//! use luxel_scene::{Assets, Material, MeshAsset, MeshInstance, MeshSource, Name, Sphere, Transform};
+//!
+//! let mut world = luxel_scene::empty_world();
+//! // A sphere: a place, a shape and a surface.
+//! let ball = (Name("ball".into()), Transform::at(DVec3::Y), Sphere { radius: 1.0 });
+//! luxel_scene::spawn(&mut world, (ball, Material::dielectric(1.5)));
+//! // A mesh is shared: the asset holds the triangles, the entity says where.
+//! let quad = MeshAsset::from_source(MeshSource::Quad)?;
+//! let mesh = world.resource_mut::<Assets>().insert_mesh(quad);
+//! luxel_scene::spawn(&mut world, (MeshInstance { mesh }, Material::lambert(Vec3::splat(0.5))));
+//!
+//! // Saved and loaded it is the same world.
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("scene.ron");
+//! luxel_scene::save(&world, &path)?;
+//! let mut again = luxel_scene::empty_world();
+//! luxel_scene::load(&path, &mut again)?;
+//! assert_eq!(luxel_scene::world_hash(&world)?, luxel_scene::world_hash(&again)?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Invariants: an id, of an entity or an asset, is never used twice; an asset never changes; what
+//! [`load`] puts into a world is finite and in range, whatever the file was.
+
+mod assets;
+mod build;
+mod components;
+mod error;
+mod file;
+mod ids;
+mod import;
+mod material;
+mod procedural;
+mod report;
+mod resources;
+
+use std::fs;
+use std::path::Path;
+
+use bevy_ecs::prelude::World;
+
+pub use assets::{
+    AssetId, Assets, Dropped, MeshAsset, MeshSource, TriangleMesh, VolumeAsset, VolumeSource, Voxel,
+    VoxelGrid,
+};
+pub use components::{
+    ActiveCamera, Camera, GlobalTransform, MeshInstance, Name, Sphere, Transform, Visibility,
+    VoxelVolume,
+};
+pub use error::SceneError;
+pub use ids::{StableId, StableIds, spawn};
+pub use material::{Material, Surface};
+pub use report::LoadReport;
+pub use resources::{Environment, RenderSettings, ToneMapping};
+
+/// A world without entities and with every resource of a scene at its default.
+pub fn empty_world() -> World {
+    let mut world = World::new();
+    world.init_resource::<StableIds>();
+    world.init_resource::<Assets>();
+    world.init_resource::<Environment>();
+    world.init_resource::<RenderSettings>();
+    world
+}
+
+/// Fills `world`, which must hold no scene yet, from a scene file (.ron) or a model (.obj, .vox).
+///
+/// A model gets a ground, a sky, a lamp and a camera that shows all of it. Elements of a model that
+/// cannot be drawn are left out and reported.
+///
+/// # Errors
+/// One message with the file and the place in it; then `world` is as it was.
+pub fn load(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
+    let metadata = fs::metadata(path).map_err(|source| SceneError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    if !metadata.is_file() {
+        return Err(SceneError::NotAFile {
+            path: path.to_owned(),
+        });
+    }
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let report = match ending.to_str() {
+        Some("ron") => file::load_scene(path, world),
+        Some("obj") => import::load_obj_scene(path, world),
+        Some("vox") => import::load_vox_scene(path, world),
+        _ => Err(SceneError::UnknownKind {
+            path: path.to_owned(),
+            expected: ".obj, .vox",
+        }),
+    }?;
+    for line in report.dropped.iter().chain(&report.warnings) {
+        tracing::warn!("{line}");
+    }
+    Ok(report)
+}
+
+/// Writes the scene of `world` to `path`, at once or not at all. Entities without a [`StableId`] are
+/// not part of the scene.
+///
+/// # Errors
+/// A value that no scene file may have, with its entity and field; or what the system says. The
+/// file that was there before is then untouched.
+pub fn save(world: &World, path: &Path) -> Result<(), SceneError> {
+    file::save_scene(world, path)
+}
+
+/// A fingerprint (XXH3) of everything that a scene shows: equal before saving and after loading, and
+/// independent of where its files lie.
+///
+/// # Errors
+/// A name or number that cannot be written down; none is known.
+pub fn world_hash(world: &World) -> Result<u64, SceneError> {
+    file::world_hash(world)
+}

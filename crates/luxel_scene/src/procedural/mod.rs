@@ -1,0 +1,38 @@
+//! Meshes and volumes by recipe: the example scenes need no files.
+
+mod canvas;
+mod island;
+mod lantern;
+mod meshes;
+mod noise;
+mod scatter;
+mod terrain;
+
+use crate::assets::{MeshSource, TriangleMesh, VolumeSource, VoxelGrid};
+
+pub(crate) use meshes::quad;
+pub(crate) use scatter::Scatter;
+
+/// The mesh of a recipe whose numbers are in range; `None` for a file.
+pub(crate) fn mesh(source: &MeshSource) -> Option<TriangleMesh> {
+    Some(match *source {
+        MeshSource::File(_) | MeshSource::FilePart(..) => return None,
+        MeshSource::Quad => meshes::quad(),
+        MeshSource::Cube => meshes::cube(),
+        MeshSource::Icosphere { subdivisions } => meshes::icosphere(subdivisions),
+        MeshSource::TorusKnot { p, q, tube, segments, sides } => {
+            meshes::torus_knot(p, q, tube, segments, sides)
+        }
+        MeshSource::Terrain { seed, cells, height } => terrain::terrain(seed, cells, height),
+    })
+}
+
+/// The volume of a recipe whose numbers are in range; `None` for a file.
+pub(crate) fn volume(source: &VolumeSource) -> Option<VoxelGrid> {
+    Some(match *source {
+        VolumeSource::File(_) => return None,
+        VolumeSource::Island { size, seed } => island::island(size, seed),
+        VolumeSource::Menger { level } => lantern::menger(level),
+        VolumeSource::Lantern { size } => lantern::lantern(size),
+    })
+}

@@ -1,0 +1,1 @@
+//! Dev-only: generators, oracles, comparers with negative controls
