@@ -1,5 +1,4 @@
-//! Rebuilds the crate when a shader file is added or removed: `include_dir!` tracks only the files it has seen.
-
+//! Embedding follows the shaders: the crate is compiled again when a file of `shaders/` changes.
 fn main() {
     println!("cargo::rerun-if-changed=../../shaders");
 }

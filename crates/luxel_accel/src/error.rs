@@ -20,7 +20,10 @@ pub enum AccelError {
         vertex_count: usize,
     },
     /// A vertex is NaN or infinite, or so far out that boxes overflow.
-    #[error("triangle {triangle} has a vertex that is not a finite number below {:e}", luxel_flat::FAR)]
+    #[error(
+        "triangle {triangle} has a vertex that is not a finite number below {:e}",
+        luxel_flat::FAR
+    )]
     BadTriangle {
         /// Position of the triangle in the input.
         triangle: usize,
@@ -40,7 +43,10 @@ pub enum AccelError {
         slot: u32,
     },
     /// A sphere must have a finite centre, a positive radius and a box within ±`FAR`.
-    #[error("sphere in slot {slot}: the radius must be positive, centre and radius finite and below {:e}", luxel_flat::FAR)]
+    #[error(
+        "sphere in slot {slot}: the radius must be positive, centre and radius finite and below {:e}",
+        luxel_flat::FAR
+    )]
     BadSphere {
         /// The sphere's slot.
         slot: u32,
@@ -99,6 +105,14 @@ impl AccelError {
         index: usize,
         rule: &'static str,
     ) -> Result<(), AccelError> {
-        if holds { Ok(()) } else { Err(AccelError::Broken { structure, index: index as u32, rule }) }
+        if holds {
+            Ok(())
+        } else {
+            Err(AccelError::Broken {
+                structure,
+                index: index as u32,
+                rule,
+            })
+        }
     }
 }

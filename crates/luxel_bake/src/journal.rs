@@ -8,6 +8,7 @@ use std::fmt;
 use bevy_ecs::prelude::{Entity, Res, ResMut, Resource};
 use bevy_ecs::system::SystemParam;
 
+use crate::objects::ObjectItem;
 use crate::{BakeCounters, BakeError};
 
 /// The number that this run stamps what it writes with. Grows with every run.
@@ -25,6 +26,7 @@ pub(crate) enum Topic {
     MeshInstance,
     Volume,
     VolumeInstance,
+    Tlas,
 }
 
 /// Why an object of the world is not in the picture although it is visible.
@@ -82,6 +84,28 @@ impl fmt::Display for BakeWarning {
     }
 }
 
+/// Why an object gets no place in the flat scene.
+#[derive(Clone, Debug)]
+pub(crate) enum Refusal {
+    /// The scene cannot be shown without it.
+    Error(BakeError),
+    /// The scene is shown without it.
+    Warning(BakeWarning),
+}
+
+impl Refusal {
+    /// An object that is left out.
+    pub(crate) fn disabled(object: &ObjectItem, reason: Disabled) -> Self {
+        Self::Warning(BakeWarning::Disabled { entity: object.label(), reason })
+    }
+}
+
+impl From<BakeError> for Refusal {
+    fn from(error: BakeError) -> Self {
+        Self::Error(error)
+    }
+}
+
 /// Complaints by place.
 #[derive(Resource, Default)]
 pub(crate) struct Complaints {
@@ -122,5 +146,27 @@ impl Journal<'_> {
             tracing::warn!("{warning}");
             self.complaints.warnings.insert(place, warning);
         }
+    }
+
+    /// Files what was refused at a place, and returns what was not.
+    pub(crate) fn settle<T>(
+        &mut self,
+        entity: Entity,
+        topic: Topic,
+        outcome: Result<Option<T>, Refusal>,
+    ) -> Option<T> {
+        let (value, error, warning) = match outcome {
+            Ok(value) => (value, None, None),
+            Err(Refusal::Error(error)) => (None, Some(error), None),
+            Err(Refusal::Warning(warning)) => (None, None, Some(warning)),
+        };
+        self.error(entity, topic, error);
+        self.warning(entity, topic, warning);
+        value
+    }
+
+    /// The first thing that keeps the scene from being shown, if there is one.
+    pub(crate) fn first_error(&self) -> Option<BakeError> {
+        self.complaints.errors.values().next().cloned()
     }
 }

@@ -1,1 +1,32 @@
-//! Systems that turn changes in the world into an up-to-date FlatScene
+//! From changes in the world to an up-to-date [`FlatScene`](luxel_flat::FlatScene).
+mod assets;
+mod baker;
+mod camera;
+mod cloud;
+mod counters;
+mod error;
+mod features;
+mod identities;
+mod instances;
+mod journal;
+mod lattice;
+mod materials;
+mod meshes;
+mod objects;
+mod placement;
+mod propagate;
+mod publish;
+mod report;
+mod spans;
+mod spheres;
+mod store;
+mod tlas;
+mod volumes;
+
+pub use baker::{BakeSet, Baker, install};
+pub use counters::BakeCounters;
+pub use error::BakeError;
+pub use journal::{BakeWarning, Disabled};
+pub use objects::Shown;
+pub use report::{BakeReport, MeshFacts, VolumeFacts};
+pub use spans::SpanAllocator;

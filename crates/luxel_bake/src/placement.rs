@@ -3,7 +3,7 @@
 //! The inverse is computed in f64 and rounded once (I01). An object whose transform cannot be inverted or leaves
 //! the range of single precision is left out, alone (I02).
 use glam::{DAffine3, DMat3, DVec3};
-use luxel_flat::{INSTANCE_MIRRORED, Instance};
+use luxel_flat::Instance;
 use luxel_geom::{Aabb, Affine};
 
 use crate::Disabled;
@@ -57,7 +57,7 @@ impl Placement {
         [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.abs().dot(far)).into_iter().fold(0.0, f64::max)
     }
 
-    /// The transforms, box and flags of the object's record, relative to the origin of tracer space.
+    /// The transforms and box of the object's record, relative to the origin of tracer space.
     pub(crate) fn record(&self, anchor: DVec3) -> Result<Instance, Disabled> {
         let translation = self.world_from_object.translation - anchor;
         let inverse_translation = -(self.object_from_world * translation);
@@ -69,13 +69,11 @@ impl Placement {
         let affine = |matrix3, translation| Affine::<f32>::from_daffine(&DAffine3 { matrix3, translation });
         let world_from_object = affine(self.world_from_object.matrix3, translation);
         let bounds = world_from_object.bounds(&self.object_box);
-        let mirrored = self.world_from_object.matrix3.determinant() < 0.0;
         Ok(Instance {
             world_from_object: world_from_object.to_rows(),
             object_from_world: affine(self.object_from_world, inverse_translation).to_rows(),
             lo: bounds.lo.to_array(),
             hi: bounds.hi.to_array(),
-            flags: if mirrored { INSTANCE_MIRRORED } else { 0 },
             ..Instance::default()
         })
     }
@@ -130,7 +128,6 @@ mod tests {
         let transform = scaled(DVec3::new(0.5, 2.0, -3.0));
         let anchor = DVec3::new(1.0, 0.0, 0.0);
         let record = Placement::new(transform, unit_box()).unwrap().record(anchor).unwrap();
-        assert_eq!(record.flags, INSTANCE_MIRRORED);
         let (forth, back) = (record.world_from_object, record.object_from_world);
         let (forth, back) = (Affine::<f64>::from_rows(&forth), Affine::<f64>::from_rows(&back));
         for corner in [DVec3::NEG_ONE, DVec3::ONE, DVec3::new(1.0, -1.0, 0.5)] {

@@ -1,1 +1,2 @@
 //! Composition root: world, schedules, headless runner, backend choice, output files
+pub mod output;

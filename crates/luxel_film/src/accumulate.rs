@@ -4,9 +4,9 @@
 //! samples (robustness.md, A7). So a pixel keeps a cascade of three partial sums, `batch` → `group` → `total`,
 //! as in pairwise summation (N. Higham, "The accuracy of floating point summation", 1993), with one deviation:
 //! a level does not hand its whole value on, only the leading bits that the next level can hold without
-//! rounding ([`leading_bits`]); the rest stays and joins the next sample. Every sample goes through `batch`
-//! to `group`, every 64² samples `group` goes to `total`. A constant input is therefore reproduced to the last
-//! bit at any number of samples, where a plain cascade of 64 is off by ten units in the last place.
+//! rounding (`leading_bits`); the rest stays and joins the next sample. Every sample goes through `batch`
+//! to `group`, every 64² samples `group` goes to `total`. A constant input is therefore reproduced to one
+//! unit in the last place at any number of samples, where a plain cascade of 64 is off by ten.
 //!
 //! Deviations from Kahan's compensated sum, which does the same job: the split is made on the bits and not by
 //! `(a + b) − a`, because shader compilers may simplify the latter to `b`.
@@ -50,7 +50,7 @@ pub fn add_sample(pixel: &mut FilmPixel, radiance: [f32; 3]) {
     let y = luminance(radiance);
     let sample = [radiance[0], radiance[1], radiance[2], y * y];
     let number = kept / 2 + 1;
-    if kept % 2 == 0 {
+    if kept.is_multiple_of(2) {
         pixel.even = add_to_cascade(pixel.even, sample, number);
     } else {
         pixel.odd = add_to_cascade(pixel.odd, sample, number);
@@ -70,13 +70,13 @@ fn add_to_cascade(cascade: Cascade, sample: Sum, number: u32) -> Cascade {
     let mut group = join(cascade.group, cascade.group_square);
     let mut total = join(cascade.total, cascade.total_square);
 
-    let part = zip(rest, group, leading_bits);
-    let batch = zip(rest, part, |rest, part| rest - part);
-    group = zip(group, part, |group, part| group + part);
-    if number % (CASCADE_FOLD * CASCADE_FOLD) == 0 {
-        let part = zip(group, total, leading_bits);
-        group = zip(group, part, |group, part| group - part);
-        total = zip(total, part, |total, part| total + part);
+    let passed = zip(rest, group, leading_bits);
+    let batch = zip(rest, passed, |rest, passed| rest - passed);
+    group = zip(group, passed, |group, passed| group + passed);
+    if number.is_multiple_of(CASCADE_FOLD * CASCADE_FOLD) {
+        let folded = zip(group, total, leading_bits);
+        group = zip(group, folded, |group, folded| group - folded);
+        total = zip(total, folded, |total, folded| total + folded);
     }
 
     let (batch, batch_square) = split(batch);
@@ -86,7 +86,7 @@ fn add_to_cascade(cascade: Cascade, sample: Sum, number: u32) -> Cascade {
 }
 
 /// The part of `value` that can be added to `sum` without rounding: at most 11 significant bits, and none below
-/// a quarter of the last place of a sum twice as large.
+/// four units in the last place of `sum`.
 #[inline]
 fn leading_bits(value: f32, sum: f32) -> f32 {
     let exponent = |x: f32| x.to_bits() >> 23 & 0xff;
@@ -152,3 +152,6 @@ fn square_sum(cascade: &Cascade) -> f64 {
 fn divide(sum: [f64; 3], count: u32) -> [f32; 3] {
     if count == 0 { [0.0; 3] } else { sum.map(|sum| (sum / f64::from(count)) as f32) }
 }
+
+#[cfg(test)]
+mod tests;

@@ -47,15 +47,8 @@ pub enum LayerValues {
 
 impl AovKind {
     /// Every kind.
-    pub const ALL: &[Self] = &[
-        Self::Albedo,
-        Self::Normal,
-        Self::Depth,
-        Self::Position,
-        Self::Ids,
-        Self::SampleCount,
-        Self::Variance,
-    ];
+    pub const ALL: &[Self] =
+        &[Self::Albedo, Self::Normal, Self::Depth, Self::Position, Self::Ids, Self::SampleCount, Self::Variance];
 
     /// Name on the command line.
     pub fn name(self) -> &'static str {
@@ -139,7 +132,14 @@ mod tests {
     #[test]
     fn layers_hold_what_the_film_holds() {
         let mut film = Film::new(2, 1);
-        let hit = Aov { albedo: [0.1, 0.2, 0.3], depth: 4.0, instance: 5, primitive: 6, position: [1.0, 2.0, 3.0], ..Aov::default() };
+        let hit = Aov {
+            albedo: [0.1, 0.2, 0.3],
+            depth: 4.0,
+            instance: 5,
+            primitive: 6,
+            position: [1.0, 2.0, 3.0],
+            ..Aov::default()
+        };
         film.aovs = Some(vec![hit, Aov::default()]);
         film.anchor = [1000.0, 0.0, 0.0];
         accumulate::add_sample(&mut film.pixels[1], [1.0; 3]);
@@ -170,7 +170,9 @@ mod tests {
         let mut film = Film::new(3, 2);
         film.aovs = Some(vec![Aov::default(); 6]);
         let mut names = std::collections::HashSet::new();
-        for layer in beauty_layers(&film).into_iter().chain(AovKind::ALL.iter().flat_map(|kind| kind.layers(&film).unwrap())) {
+        for layer in
+            beauty_layers(&film).into_iter().chain(AovKind::ALL.iter().flat_map(|kind| kind.layers(&film).unwrap()))
+        {
             let count = match &layer.values {
                 LayerValues::Color(values) | LayerValues::Float(values) => values.len(),
                 LayerValues::Integer(values) => values.len(),

@@ -46,16 +46,71 @@ impl ImageError {
         let mean_square = squares.iter().sum::<f64>() / squares.len() as f64;
         squares.sort_unstable_by(f64::total_cmp);
         let quantile = |q: f64| squares[(q * squares.len() as f64).ceil() as usize - 1].sqrt();
-        Self {
-            relative: mean_square.sqrt(),
-            p50: quantile(0.50),
-            p95: quantile(0.95),
-            samples: film.samples(),
-        }
+        Self { relative: mean_square.sqrt(), p50: quantile(0.50), p95: quantile(0.95), samples: film.samples() }
     }
 
     /// True if every pixel has at least [`MIN_SAMPLES`] samples.
     pub fn is_trusted(&self) -> bool {
         self.samples >= MIN_SAMPLES
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A film with one row of pixels, each with `samples` grey samples from a function of (pixel, sample).
+    fn film(width: u32, samples: u32, value: impl Fn(usize, u32) -> f32) -> Film {
+        let mut film = Film::new(width, 1);
+        for (i, pixel) in film.pixels.iter_mut().enumerate() {
+            (0..samples).for_each(|sample| accumulate::add_sample(pixel, [value(i, sample); 3]));
+        }
+        film
+    }
+
+    #[test]
+    fn a_pixel_that_alternates_has_the_error_of_its_variance() {
+        // 0, 2, 0, 2, …: mean 1, variance of a sample n / (n − 1), of the mean 1 / (n − 1).
+        let error = ImageError::of(&film(7, 64, |_, sample| (sample % 2 * 2) as f32), 1.0);
+        let expected = (1.0 / 63.0 / (1.0 + 1e-4_f64)).sqrt();
+        for found in [error.relative, error.p50, error.p95] {
+            assert!((found - expected).abs() < 1e-6 * expected, "{found} instead of {expected}");
+        }
+        assert!(error.is_trusted() && error.samples == 64);
+    }
+
+    #[test]
+    fn four_times_the_samples_halve_the_error() {
+        let noise = |i: usize, sample: u32| luxel_geom::rng::uniform4::<f32>(i as u32, sample, 0, 1)[0];
+        let [few, many] = [64, 256].map(|samples| ImageError::of(&film(500, samples, noise), 1.0).relative);
+        // Uniform in [0, 1): standard deviation 1/√12 and mean 1/2.
+        assert!((few - (1.0 / (3.0 * 64.0_f64)).sqrt()).abs() < 0.02 * few, "{few}");
+        assert!((few / many - 2.0).abs() < 0.05, "{}", few / many);
+    }
+
+    #[test]
+    fn quantiles_tell_a_few_bad_pixels_from_many() {
+        let noisy_from = |first: usize| {
+            let value = move |i: usize, sample: u32| {
+                if i < first { 1.0 } else { (sample % 2 * 2) as f32 }
+            };
+            ImageError::of(&film(100, 64, value), 1.0)
+        };
+        let (few, many) = (noisy_from(96), noisy_from(40));
+        assert!(few.p50 < 1e-3 && few.p95 < 1e-3 && few.relative > 0.02);
+        assert!(many.p50 > 0.1 && many.p95 > 0.1);
+    }
+
+    #[test]
+    fn black_and_empty_films_have_no_error_and_few_samples_no_trust() {
+        assert_eq!(ImageError::of(&film(4, 64, |_, _| 0.0), 1.0).relative, 0.0);
+        assert!(!ImageError::of(&film(4, MIN_SAMPLES - 1, |_, _| 0.0), 1.0).is_trusted());
+        assert!(!ImageError::of(&Film::new(0, 0), 1.0).is_trusted());
+    }
+
+    #[test]
+    fn the_floor_follows_the_exposure() {
+        let dim = |white| ImageError::of(&film(4, 64, |_, sample| (sample % 2) as f32 * 1e-3), white).relative;
+        assert!(dim(1.0) < 0.01 && dim(1e-3) > 0.1);
     }
 }

@@ -14,18 +14,18 @@ pub enum StopRule {
 
 /// What the rules look at.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct StopState<'a> {
+pub struct StopState {
     /// Samples that every pixel has.
     pub samples: u32,
     /// Seconds spent tracing.
     pub secs: f64,
     /// The latest estimate of the error, if one was made.
-    pub error: Option<&'a ImageError>,
+    pub error: Option<ImageError>,
 }
 
 impl StopRule {
     /// True if the rule says stop.
-    pub fn is_reached(self, state: StopState<'_>) -> bool {
+    pub fn is_reached(self, state: StopState) -> bool {
         match self {
             Self::Samples(samples) => state.samples >= samples,
             Self::Seconds(secs) => state.secs >= secs,
@@ -34,7 +34,7 @@ impl StopRule {
     }
 
     /// The first rule of the list that says stop.
-    pub fn first_reached(rules: &[Self], state: StopState<'_>) -> Option<Self> {
+    pub fn first_reached(rules: &[Self], state: StopState) -> Option<Self> {
         rules.iter().copied().find(|rule| rule.is_reached(state))
     }
 
@@ -71,10 +71,10 @@ mod tests {
         let rule = StopRule::Error(0.02);
         let is_reached = |error| rule.is_reached(StopState { samples: 1 << 20, secs: 0.0, error });
         assert!(!is_reached(None));
-        assert!(!is_reached(Some(&error(0.0, MIN_SAMPLES - 1))));
-        assert!(!is_reached(Some(&error(0.021, MIN_SAMPLES))));
-        assert!(!is_reached(Some(&error(f64::NAN, MIN_SAMPLES))));
-        assert!(is_reached(Some(&error(0.02, MIN_SAMPLES))));
+        assert!(!is_reached(Some(error(0.0, MIN_SAMPLES - 1))));
+        assert!(!is_reached(Some(error(0.021, MIN_SAMPLES))));
+        assert!(!is_reached(Some(error(f64::NAN, MIN_SAMPLES))));
+        assert!(is_reached(Some(error(0.02, MIN_SAMPLES))));
     }
 
     #[test]

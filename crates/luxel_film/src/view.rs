@@ -223,7 +223,13 @@ mod tests {
 
     #[test]
     fn every_view_draws_every_pixel_and_survives_odd_values() {
-        let odd = Aov { normal: [f32::NAN; 3], depth: f32::NAN, position: [f32::NAN; 3], albedo: [f32::NAN; 3], ..hit(1, 0.0) };
+        let odd = Aov {
+            normal: [f32::NAN; 3],
+            depth: f32::NAN,
+            position: [f32::NAN; 3],
+            albedo: [f32::NAN; 3],
+            ..hit(1, 0.0)
+        };
         for hits in [vec![], vec![Aov::default()], vec![odd; 3]] {
             let film = film(hits);
             for view in View::ALL {

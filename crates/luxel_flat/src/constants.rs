@@ -61,7 +61,7 @@ shared_const! {
     /// [`Path::state`](crate::Path): the ray enters the excluded primitive.
     pub const PATH_ENTERING: u32 = 4;
 
-    /// Samples in the first level of a film cascade before it is folded into the next.
+    /// A film cascade's `group` is folded into its `total` every `CASCADE_FOLD`² samples.
     pub const CASCADE_FOLD: u32 = 64;
     /// Threads of a workgroup in every path tracing kernel.
     pub const WORKGROUP_SIZE: u32 = 64;

@@ -2,20 +2,20 @@
 use crate::layout::{WgslType, shared_struct};
 
 shared_struct! {
-    /// Partial sums of one half of a pixel's samples, folded every `CASCADE_FOLD` (robustness.md, A7): no running
-    /// mean, and no single sum of millions of terms.
+    /// Partial sums of one half of a pixel's samples (robustness.md, A7): no running mean, and no single sum of
+    /// millions of terms. Their sum is the sum of the samples.
     pub struct Cascade {
-        /// Sum of up to 64 samples.
+        /// What `group` could not hold without rounding; less than its last few bits.
         pub batch: [f32; 3],
-        /// Sum of up to 64 squared luminances.
+        /// The same of the squared luminances.
         pub batch_square: f32,
-        /// Sum of up to 64 batches.
+        /// Sum of up to `CASCADE_FOLD`² samples, and what `total` could not hold without rounding.
         pub group: [f32; 3],
-        /// Sum of up to 64 batches of squared luminances.
+        /// The same of the squared luminances.
         pub group_square: f32,
-        /// Sum of groups.
+        /// Sum of all samples up to the last fold.
         pub total: [f32; 3],
-        /// Sum of groups of squared luminances.
+        /// The same of the squared luminances.
         pub total_square: f32,
     }
 }
@@ -26,13 +26,14 @@ impl WgslType for Cascade {
 }
 
 shared_struct! {
-    /// A pixel: even samples in one half, odd samples in the other, so that their difference tells the error.
+    /// A pixel: of the samples that are kept, even ones in one half and odd ones in the other, so that their
+    /// difference tells the error.
     pub struct FilmPixel {
-        /// Sums of samples 0, 2, 4, …
+        /// Sums of the kept samples 0, 2, 4, …
         pub even: Cascade,
-        /// Sums of samples 1, 3, 5, …
+        /// Sums of the kept samples 1, 3, 5, …
         pub odd: Cascade,
-        /// Samples accumulated.
+        /// Samples taken, the dropped ones included.
         pub count: u32,
         /// Samples dropped because they were not finite.
         pub dropped: u32,

@@ -27,7 +27,7 @@ pub use counters::{Counter, Counters};
 pub use features::{FEATURES, Feature, FeatureRow, FeatureSet};
 pub use film::{Cascade, FilmPixel};
 pub use heap::Heap;
-pub use params::{CameraRecord, SceneParams, SliceParams};
+pub use params::{CameraRecord, DisplayParams, SceneParams, SliceParams};
 pub use path::{Aov, Path};
 pub use primitives::{BvhNode, Instance, MaterialRecord, OctreeNode, SphereRecord, SvoNode, Triangle};
 pub use scene::{FlatScene, Span};

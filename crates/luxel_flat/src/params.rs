@@ -80,3 +80,17 @@ shared_struct! {
         pub tile_first: u32,
     }
 }
+
+shared_struct! {
+    /// How radiance becomes the picture that is shown.
+    pub struct DisplayParams {
+        /// Factor on radiance: 2 to the power of the exposure in stops.
+        pub exposure: f32,
+        /// `TONE_MAP_NONE`, `TONE_MAP_REINHARD`, `TONE_MAP_ACES` or `TONE_MAP_AGX`.
+        pub tone_map: u32,
+        /// Always 0.
+        pub reserved0: u32,
+        /// Always 0.
+        pub reserved1: u32,
+    }
+}

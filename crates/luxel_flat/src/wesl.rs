@@ -3,7 +3,7 @@ use std::fmt::Write as _;
 
 use crate::layout::SharedStruct;
 use crate::{
-    Aov, BvhNode, CameraRecord, Cascade, Counter, FilmPixel, Instance, MaterialRecord, OctreeNode, Path, SceneParams,
+    Aov, BvhNode, CameraRecord, Cascade, Counter, DisplayParams, FilmPixel, Instance, MaterialRecord, OctreeNode, Path, SceneParams,
     SliceParams, SphereRecord, SvoNode, Triangle,
 };
 
@@ -20,6 +20,7 @@ pub fn structs() -> Vec<StructRow> {
         row::<CameraRecord>(),
         row::<SceneParams>(),
         row::<SliceParams>(),
+        row::<DisplayParams>(),
         row::<BvhNode>(),
         row::<OctreeNode>(),
         row::<SphereRecord>(),

@@ -198,12 +198,12 @@ impl Gpu {
         let validation = pollster::block_on(validation.pop());
         let internal = pollster::block_on(internal.pop());
         let memory = pollster::block_on(memory.pop());
-        // On a lost device creation "succeeds" with a dead object, or fails for odd reasons: the loss is the news.
+        // On a lost device a creation can "succeed" with a dead object: the loss is the news.
         self.poll(wgpu::PollType::Poll, what)?;
         self.shared.health.check_lost()?;
         // Memory first: an object that got none is invalid, too.
         match memory.or(internal).or(validation) {
-            Some(error) => Err(GpuError::from_wgpu(error, what, bytes)),
+            Some(error) => Err(self.lost_or(GpuError::from_wgpu(error, what, bytes))),
             None => Ok(made),
         }
     }
@@ -225,6 +225,20 @@ impl Gpu {
         self.check()
     }
 
+    /// `error`, or the loss of the device where that is the reason: while a dying device still has work under way wgpu
+    /// finds its objects invalid, and tells of the loss only when the work is done.
+    fn lost_or(&self, error: GpuError) -> GpuError {
+        let timeout = Some(self.shared.timeout);
+        let all = wgpu::PollType::Wait {
+            submission_index: None,
+            timeout,
+        };
+        match self.poll(all, "work under way") {
+            Err(lost @ GpuError::Lost { .. }) => lost,
+            _ => self.shared.health.check_lost().err().unwrap_or(error),
+        }
+    }
+
     fn poll(&self, poll: wgpu::PollType, what: &str) -> Result<(), GpuError> {
         self.shared.health.check_lost()?;
         match catch_unwind(AssertUnwindSafe(|| self.shared.device.poll(poll))) {
@@ -233,14 +247,11 @@ impl Gpu {
                 what: what.to_owned(),
                 secs: self.shared.timeout.as_secs_f64(),
             }),
-            Ok(Err(error @ wgpu::PollError::WrongSubmissionIndex(..))) => {
-                // The submit itself was refused, which is how a destroyed device shows first.
-                self.check()?;
-                Err(GpuError::Internal {
-                    what: what.to_owned(),
-                    message: error.to_string(),
-                })
-            }
+            // The submit itself was refused, as on a dying device.
+            Ok(Err(error)) => Err(self.lost_or(GpuError::Internal {
+                what: what.to_owned(),
+                message: error.to_string(),
+            })),
             Err(_) => {
                 self.shared
                     .health
@@ -294,5 +305,26 @@ mod tests {
         let plain = GpuLimits::from(&limits_for(LimitsTier::WebGpuDefault, &adapter));
         assert_eq!(plain.max_storage_binding_bytes, 128 << 20);
         assert_eq!(plain.max_buffer_bytes, 256 << 20);
+    }
+
+    #[test]
+    fn an_uncaptured_error_is_reported_once_and_does_not_panic() {
+        let Some(gpu) = crate::testing::gpu_or_fail() else {
+            return;
+        };
+        let too_large = wgpu::BufferDescriptor {
+            label: Some("unscoped"),
+            size: u64::MAX,
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        };
+        let _ = gpu.shared.device.create_buffer(&too_large);
+        let _ = gpu.shared.device.create_buffer(&too_large);
+        assert!(matches!(gpu.check(), Err(GpuError::Validation { .. })));
+        assert_eq!(gpu.take_errors().len(), 1);
+        assert_eq!(gpu.check(), Ok(()));
+        let scoped = gpu.scoped("thing", 7, |device| device.create_buffer(&too_large));
+        assert!(matches!(scoped, Err(GpuError::Validation { what, .. }) if what == "thing"));
+        assert_eq!(gpu.check(), Ok(()), "a scoped error is not reported twice");
     }
 }

@@ -119,18 +119,11 @@ impl Frame {
     /// # Errors
     /// [`GpuError::Validation`] naming the passes when one of them was invalid; [`GpuError::Lost`], …
     pub fn submit(&mut self) -> Result<Submission, GpuError> {
-        self.recording()?;
-        let Some(Recording {
+        let Recording {
             mut encoder,
             labels,
             timers,
-        }) = self.open.take()
-        else {
-            return Err(GpuError::Internal {
-                what: "submit".to_owned(),
-                message: "no encoder".to_owned(),
-            });
-        };
+        } = self.take_recording()?;
         let what = format!("passes {}", labels.join(", "));
         let queue = self.gpu.queue();
         let started = Instant::now();
@@ -171,38 +164,38 @@ impl Frame {
             timers.extend(gpu.timers().take(&gpu)?);
         }
         labels.push(label);
-        // The pass's label is its debug group. A group pushed on the encoder around the pass would begin and end in
+        // The label is the pass's debug group. A group pushed on the encoder around the pass would begin and end in
         // different command buffers of wgpu's, upon which Mesa 22.3 crashes (its label stack underflows).
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some(label),
-                timestamp_writes: timers.last_mut().and_then(TimerBlock::next_pass),
-            });
-            pass.set_pipeline(pipeline.raw());
-            for (group, bind_group) in bindings.groups() {
-                pass.set_bind_group(group, bind_group, &[]);
-            }
-            dispatch(&mut pass);
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(label),
+            timestamp_writes: timers.last_mut().and_then(TimerBlock::next_pass),
+        });
+        pass.set_pipeline(pipeline.raw());
+        for (group, bind_group) in bindings.groups() {
+            pass.set_bind_group(group, bind_group, &[]);
         }
+        dispatch(&mut pass);
         Ok(())
     }
 
     fn recording(&mut self) -> Result<&mut Recording, GpuError> {
-        if self.open.is_none() {
-            let encoder = self.gpu.scoped("command encoder", 0, |device| {
-                device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-                    label: Some("frame"),
-                })
-            })?;
-            self.open = Some(Recording {
-                encoder,
-                labels: Vec::new(),
-                timers: Vec::new(),
-            });
+        let recording = self.take_recording()?;
+        Ok(self.open.insert(recording))
+    }
+
+    fn take_recording(&mut self) -> Result<Recording, GpuError> {
+        if let Some(recording) = self.open.take() {
+            return Ok(recording);
         }
-        self.open.as_mut().ok_or_else(|| GpuError::Internal {
-            what: "frame".to_owned(),
-            message: "no encoder".to_owned(),
+        let encoder = self.gpu.scoped("command encoder", 0, |device| {
+            device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
+                label: Some("frame"),
+            })
+        })?;
+        Ok(Recording {
+            encoder,
+            labels: Vec::new(),
+            timers: Vec::new(),
         })
     }
 }

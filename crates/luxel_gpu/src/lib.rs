@@ -6,7 +6,7 @@
 //!
 //! Invariants
 //! - No function panics when the device is lost, out of memory or missing.
-//! - Only [`Frame`] opens a pass, so every pass has a debug group and a time.
+//! - Only [`Frame`] opens a pass, so every pass has a label and a time.
 //! - At most the WebGPU default of eight storage buffers per kernel, whatever the adapter offers.
 //! - A shader is linked for a set of features; code and *bindings* of a feature left out do not exist in it.
 
@@ -21,6 +21,7 @@ mod health;
 mod introspect;
 mod library;
 mod link;
+mod numerics;
 mod pipeline;
 mod probe;
 mod slicer;
@@ -37,8 +38,9 @@ pub use error::GpuError;
 pub use frame::{Frame, Submission, workgroups_for};
 pub use introspect::{Binding, BindingAccess, LinkedShader, MemberLayout, StructLayout};
 pub use library::{FeatureSet, Kernel, Overrides, ShaderLibrary};
+pub use numerics::{NumericsReport, SelectsNan};
 pub use pipeline::{CompileRecord, Pipeline, PipelineCache};
-pub use probe::{NumericsReport, SelectsNan, probe};
+pub use probe::probe;
 pub use slicer::{Slice, SlicePolicy, Slicer};
 pub use timer::{PassTime, PassTimes};
 pub use uniform::Uniform;

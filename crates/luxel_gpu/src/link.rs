@@ -117,7 +117,19 @@ fn wesl_error(kernel: &Kernel, error: wesl::Error) -> GpuError {
         (Some(source), Some(span)) => excerpt(&place, source, span.range()),
         _ => format!("  --> {place}"),
     };
-    shader_error(kernel, diagnostic.error.to_string(), excerpt)
+    shader_error(kernel, wesl_message(&diagnostic.error), excerpt)
+}
+
+fn wesl_message(error: &wesl::Error) -> String {
+    let wesl::Error::ParseError(error) = error else {
+        return error.to_string();
+    };
+    let message = error.error.to_string();
+    // A short list of what could follow helps; often it is a list of all tokens.
+    match message.split_once(", expected ") {
+        Some((unexpected, expected)) if expected.len() > 80 => unexpected.to_owned(),
+        _ => message,
+    }
 }
 
 /// An error about `kernel`.

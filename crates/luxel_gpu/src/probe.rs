@@ -7,14 +7,11 @@
 //!
 //! Rays against watertight geometry are no part of this room: the triangle kernel's owner runs them beside this probe.
 
-use std::fmt;
-
 use bytemuck::{Pod, Zeroable};
-use serde::Serialize;
 
 use crate::{
-    FeatureSet, Frame, Gpu, GpuBuffer, GpuError, Kernel, Overrides, PassTimes, PipelineCache,
-    Resources, Uniform,
+    FeatureSet, Frame, Gpu, GpuBuffer, GpuError, Kernel, NumericsReport, Overrides, PassTimes,
+    PipelineCache, Resources, SelectsNan, Uniform,
 };
 
 const SAMPLES: u32 = 4096;
@@ -36,13 +33,6 @@ const TINY: f32 = f32::from_bits(0x3080_0000);
 const NAN_BITS: u32 = 0x7fc0_0000;
 const INFINITY_BITS: u32 = 0x7f80_0000;
 const SUBNORMAL_BITS: u32 = 0x0010_0000;
-
-/// Largest error of division that WGSL allows, in units in the last place.
-const DIVISION_ULP: f64 = 2.5;
-/// Largest error of the inverse square root that WGSL allows.
-const INVERSE_ROOT_ULP: f64 = 2.0;
-/// `sqrt` inherits from 1 / inverseSqrt: both errors, and half an ulp for a change of binade.
-const ROOT_ULP: f64 = DIVISION_ULP + INVERSE_ROOT_ULP + 0.5;
 
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
@@ -100,138 +90,6 @@ struct Findings {
     two_sum: u32,
     two_sum_guarded: u32,
     loop_steps: u32,
-}
-
-/// What `min` or `max` gives when one argument is NaN.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum SelectsNan {
-    /// The number, as IEEE 754-2008's minNum.
-    Number,
-    /// The NaN.
-    Nan,
-    /// Something else.
-    Other,
-}
-
-/// What the device's arithmetic does. Errors are the largest seen, in units in the last place of the exact value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct NumericsReport {
-    /// `fma` rounds once.
-    pub fma_is_fused: bool,
-    /// `a * b + c` is contracted to one rounding.
-    pub sums_are_contracted: bool,
-    /// Error of `a / b`.
-    pub division_ulp: f64,
-    /// Error of `1 / b`.
-    pub reciprocal_ulp: f64,
-    /// Error of `sqrt`.
-    pub root_ulp: f64,
-    /// Error of `inverseSqrt`.
-    pub inverse_root_ulp: f64,
-    /// Results below 2⁻¹²⁶ are kept, not flushed to zero.
-    pub subnormals_kept: bool,
-    /// A test of its bits finds a NaN that went through a multiplication.
-    pub nan_found_by_bits: bool,
-    /// `x != x` finds a NaN.
-    pub nan_unequal_itself: bool,
-    /// `!(x == x)` finds a NaN.
-    pub nan_not_equal_itself: bool,
-    /// `min(NaN, 1)`, `min(1, NaN)`, `max(NaN, 1)`, `max(1, NaN)`.
-    pub min_max_with_nan: [SelectsNan; 4],
-    /// An infinity goes through a multiplication by one.
-    pub infinity_kept: bool,
-    /// An overflow gives infinity.
-    pub overflow_is_infinity: bool,
-    /// Infinity less itself is NaN.
-    pub infinity_less_infinity_is_nan: bool,
-    /// 1 / 0 is infinity.
-    pub division_by_zero_is_infinity: bool,
-    /// The error term of TwoSum survives the compiler.
-    pub two_sum_survives: bool,
-    /// It survives when every step goes through the bits.
-    pub guarded_two_sum_survives: bool,
-    /// Integer hashes and quotients equal the CPU's.
-    pub integers_exact: bool,
-    /// A loop stops at its cap.
-    pub loop_caps_hold: bool,
-    /// Milliseconds that the kernels ran.
-    pub kernel_ms: f64,
-}
-
-impl NumericsReport {
-    /// What our kernels rely on and this device does not give; empty on a sound one.
-    pub fn violations(&self) -> Vec<String> {
-        let errors = [
-            ("division", self.division_ulp, DIVISION_ULP),
-            ("reciprocal", self.reciprocal_ulp, DIVISION_ULP),
-            ("sqrt", self.root_ulp, ROOT_ULP),
-            ("inverseSqrt", self.inverse_root_ulp, INVERSE_ROOT_ULP),
-        ];
-        let promises = [
-            ("a NaN is not found by its bits", self.nan_found_by_bits),
-            (
-                "integer arithmetic differs from the CPU's",
-                self.integers_exact,
-            ),
-            ("a loop does not stop at its cap", self.loop_caps_hold),
-        ];
-        let errors = errors.into_iter().filter(|(_, error, bound)| error > bound);
-        let broken = promises.into_iter().filter(|(_, kept)| !kept);
-        errors
-            .map(|(name, error, bound)| {
-                format!("{name} is off by {error:.1} ulp, WGSL allows {bound}")
-            })
-            .chain(broken.map(|(message, _)| message.to_owned()))
-            .collect()
-    }
-}
-
-impl fmt::Display for NumericsReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let yes = |value: bool| if value { "yes" } else { "no" };
-        writeln!(
-            f,
-            "error in ulp: division {:.2}, reciprocal {:.2}, sqrt {:.2}, inverseSqrt {:.2}",
-            self.division_ulp, self.reciprocal_ulp, self.root_ulp, self.inverse_root_ulp
-        )?;
-        writeln!(
-            f,
-            "fma fused: {}; a*b+c contracted: {}",
-            yes(self.fma_is_fused),
-            yes(self.sums_are_contracted)
-        )?;
-        writeln!(
-            f,
-            "TwoSum survives: {}, guarded: {}; subnormals kept: {}",
-            yes(self.two_sum_survives),
-            yes(self.guarded_two_sum_survives),
-            yes(self.subnormals_kept)
-        )?;
-        writeln!(
-            f,
-            "NaN found by bits: {}, by x != x: {}, by !(x == x): {}; min and max with NaN: {:?}",
-            yes(self.nan_found_by_bits),
-            yes(self.nan_unequal_itself),
-            yes(self.nan_not_equal_itself),
-            self.min_max_with_nan
-        )?;
-        writeln!(
-            f,
-            "infinity kept: {}, from overflow: {}, from 1/0: {}; inf - inf is NaN: {}",
-            yes(self.infinity_kept),
-            yes(self.overflow_is_infinity),
-            yes(self.division_by_zero_is_infinity),
-            yes(self.infinity_less_infinity_is_nan)
-        )?;
-        write!(
-            f,
-            "integers exact: {}; loop caps hold: {}; probe took {:.2} ms",
-            yes(self.integers_exact),
-            yes(self.loop_caps_hold),
-            self.kernel_ms
-        )
-    }
 }
 
 /// Runs the probe; `pipelines` must be over a library with the module `package::probe`.
@@ -413,4 +271,115 @@ fn judge(
 
 fn is_nan_bits(bits: u32) -> bool {
     bits & 0x7fff_ffff > 0x7f80_0000
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{LinkedShader, ShaderLibrary};
+
+    /// What a device with IEEE arithmetic, unfused, would give.
+    fn ideal() -> (Vec<Operands>, Vec<Results>, Findings) {
+        let operands = operands();
+        let result = |o: &Operands| Results {
+            quotient: o.a / o.b,
+            reciprocal: 1.0 / o.b,
+            root: o.a.sqrt(),
+            inverse_root: (1.0 / f64::from(o.a).sqrt()) as f32,
+            fused: o.a.mul_add(o.b, o.c),
+            product_sum: o.a * o.b + o.c,
+            hash: pcg_hash(o.bits),
+            quotient_bits: o.bits / ((o.bits >> 16) | 1),
+        };
+        let results = operands.iter().map(result).collect();
+        let findings = Findings {
+            nan_by_bits: 1,
+            nan_unequal_itself: 1,
+            nan_not_equal_itself: 1,
+            min_nan_one: ONE.to_bits(),
+            min_one_nan: ONE.to_bits(),
+            max_nan_one: ONE.to_bits(),
+            max_one_nan: NAN_BITS,
+            infinity: INFINITY_BITS,
+            overflow: INFINITY_BITS,
+            infinity_less_infinity: NAN_BITS,
+            one_over_zero: INFINITY_BITS,
+            half_min_normal: 0x0040_0000,
+            subnormal_sum: 2 * SUBNORMAL_BITS,
+            two_sum: TINY.to_bits(),
+            two_sum_guarded: TINY.to_bits(),
+            loop_steps: LOOP_CAP,
+        };
+        (operands, results, findings)
+    }
+
+    #[test]
+    fn an_ideal_device_is_sound() {
+        let (operands, results, findings) = ideal();
+        let report = judge(&operands, &results, &findings, 1.0);
+        assert_eq!(report.violations(), [""; 0]);
+        assert!(report.fma_is_fused && !report.sums_are_contracted);
+        assert!(report.division_ulp <= 0.5 && report.root_ulp <= 0.5);
+        assert!(report.subnormals_kept && report.two_sum_survives && report.infinity_kept);
+        assert_eq!(
+            report.min_max_with_nan[2..],
+            [SelectsNan::Number, SelectsNan::Nan]
+        );
+    }
+
+    /// Each fault, put into one of 4096 results or one finding, is found.
+    #[test]
+    fn every_fault_is_a_violation() {
+        type Fault = fn(&mut Vec<Results>, &mut Findings);
+        let faults: [(&str, Fault); 9] = [
+            ("division", |r, _| {
+                r[77].quotient = f32::from_bits(r[77].quotient.to_bits() + 4)
+            }),
+            ("reciprocal", |r, _| r[78].reciprocal = f32::NAN),
+            ("sqrt", |r, _| r[79].root = 0.0),
+            ("inverseSqrt", |r, _| r[80].inverse_root = f32::INFINITY),
+            ("integer", |r, _| r[81].hash ^= 1),
+            ("integer", |r, _| r[82].quotient_bits ^= 1),
+            ("integer", |r, _| r.truncate(4000)),
+            ("NaN", |_, f| f.nan_by_bits = 0),
+            ("loop", |_, f| f.loop_steps += 1),
+        ];
+        for (name, fault) in faults {
+            let (operands, mut results, mut findings) = ideal();
+            fault(&mut results, &mut findings);
+            let violations = judge(&operands, &results, &findings, 1.0).violations();
+            assert!(
+                violations.len() == 1 && violations[0].contains(name),
+                "{name}: {violations:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn records_lie_as_the_shader_says() {
+        let link = |kernel| {
+            ShaderLibrary::embedded()
+                .link(kernel, &FeatureSet::default())
+                .unwrap()
+        };
+        let check = |shader: &LinkedShader, name: &str, bytes: usize| {
+            let layout = shader.layout(name).unwrap();
+            assert_eq!(layout.size as usize, bytes, "{name}");
+            // All members are single words, in order.
+            assert!(
+                layout
+                    .members
+                    .iter()
+                    .zip(0..)
+                    .all(|(member, i)| member.offset == 4 * i),
+                "{name}"
+            );
+        };
+        let accuracy = link(&ACCURACY);
+        check(&accuracy, "Operands", size_of::<Operands>());
+        check(&accuracy, "Results", size_of::<Results>());
+        let special_values = link(&SPECIAL_VALUES);
+        check(&special_values, "Specials", size_of::<Specials>());
+        check(&special_values, "Findings", size_of::<Findings>());
+    }
 }

@@ -52,14 +52,13 @@ impl Transform {
     /// Looking straight up or down, or at itself, there is no nearest +Y; then the rotation of a
     /// view along −Z is tilted or left as it is, so the result is always a rotation.
     pub fn looking_at(eye: DVec3, target: DVec3) -> Self {
-        let rotation = (target - eye).try_normalize().map_or(DQuat::IDENTITY, |forward| {
-            let right = forward
-                .cross(DVec3::Y)
-                .try_normalize()
-                .unwrap_or(DVec3::X);
-            let up = right.cross(forward);
-            DQuat::from_mat3(&glam::DMat3::from_cols(right, up, -forward)).normalize()
-        });
+        let rotation = (target - eye)
+            .try_normalize()
+            .map_or(DQuat::IDENTITY, |forward| {
+                let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
+                let up = right.cross(forward);
+                DQuat::from_mat3(&glam::DMat3::from_cols(right, up, -forward)).normalize()
+            });
         Self {
             translation: eye,
             rotation,

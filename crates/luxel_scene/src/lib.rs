@@ -48,8 +48,8 @@ use std::path::Path;
 use bevy_ecs::prelude::World;
 
 pub use assets::{
-    AssetId, Assets, Dropped, MeshAsset, MeshSource, TriangleMesh, VolumeAsset, VolumeSource, Voxel,
-    VoxelGrid,
+    AssetId, Assets, Dropped, MeshAsset, MeshSource, TriangleMesh, VolumeAsset, VolumeSource,
+    Voxel, VoxelGrid,
 };
 pub use components::{
     ActiveCamera, Camera, GlobalTransform, MeshInstance, Name, Sphere, Transform, Visibility,

@@ -1,1 +1,11 @@
-//! Dev-only: generators, oracles, comparers with negative controls
+//! Dev-only: deterministic generators of the hard cases that the rooms' tests share.
+//!
+//! Everything is made from integer hashes (`luxel_geom::rng`), so that a case is the same on every machine and
+//! can be named by its seed.
+pub mod meshes;
+pub mod random;
+pub mod rays;
+pub mod spheres;
+
+pub use meshes::TestMesh;
+pub use random::Random;

@@ -1,7 +1,10 @@
 //! Buffers: limits, growth, ranges.
 
 use luxel_gpu::testing::gpu_or_fail;
-use luxel_gpu::{Gpu, GpuBuffer, GpuError, GpuRequest, LimitsTier, SoftwarePolicy};
+use luxel_gpu::{
+    Frame, Gpu, GpuBuffer, GpuError, GpuRequest, LimitsTier, Pipeline, PipelineCache,
+    SoftwarePolicy, Submission, Uniform,
+};
 
 #[test]
 fn what_is_written_is_read() {
@@ -112,4 +115,17 @@ fn a_wrong_adapter_name_says_what_there_is() {
             .iter()
             .any(|facts| facts.name == gpu.facts().name)
     );
+}
+
+/// Resources of an ECS must be `Send + Sync + 'static`; a type that is not fails to compile here.
+#[test]
+fn handles_may_live_in_an_ecs() {
+    fn is_resource<T: Send + Sync + 'static>() {}
+    is_resource::<Gpu>();
+    is_resource::<GpuBuffer>();
+    is_resource::<Uniform<[u32; 4]>>();
+    is_resource::<Frame>();
+    is_resource::<Submission>();
+    is_resource::<Pipeline>();
+    is_resource::<PipelineCache>();
 }

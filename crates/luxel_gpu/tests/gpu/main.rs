@@ -1,5 +1,7 @@
 //! The room on a real device (hardware or lavapipe).
 
+#![allow(clippy::unwrap_used)]
+
 mod buffers;
 mod kernels;
 mod lost;

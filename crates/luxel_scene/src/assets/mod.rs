@@ -13,7 +13,7 @@ use bevy_ecs::prelude::Resource;
 use serde::{Deserialize, Serialize};
 
 pub use mesh::{Dropped, MeshAsset, MeshSource, TriangleMesh};
-pub use volume::{Voxel, VoxelGrid, VolumeAsset, VolumeSource};
+pub use volume::{VolumeAsset, VolumeSource, Voxel, VoxelGrid};
 
 /// Which asset; meshes and volumes share one sequence. At least 1, saved, never reused.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Serialize, Deserialize)]

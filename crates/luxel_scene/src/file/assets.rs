@@ -36,7 +36,9 @@ pub(super) fn load_assets(
         volumes.insert(id, Arc::new(volume_asset(source, &mut report)?));
     }
     let used = file.meshes.keys().chain(file.volumes.keys()).max();
-    let next = used.map_or(1, |id| id.0 + 1).max(file.next_asset.unwrap_or(1));
+    let next = used
+        .map_or(1, |id| id.0 + 1)
+        .max(file.next_asset.unwrap_or(1));
     Ok((Assets::from_tables(meshes, volumes, next), report))
 }
 
@@ -47,7 +49,10 @@ pub(crate) fn mesh_asset(source: MeshSource, objs: &mut ObjCache) -> Result<Mesh
             let file = objs.get(path)?;
             let count = file.parts.len();
             let found = file.parts.get(*part as usize).ok_or_else(|| {
-                SceneError::unusable(path, format!("has {count} parts, so there is no part {part}"))
+                SceneError::unusable(
+                    path,
+                    format!("has {count} parts, so there is no part {part}"),
+                )
             })?;
             (found.mesh.clone(), file.dropped)
         }
@@ -55,7 +60,10 @@ pub(crate) fn mesh_asset(source: MeshSource, objs: &mut ObjCache) -> Result<Mesh
             let file = objs.get(path)?;
             (file.whole(), file.dropped)
         }
-        recipe => (procedural::mesh(recipe).unwrap_or_default(), Dropped::default()),
+        recipe => (
+            procedural::mesh(recipe).unwrap_or_default(),
+            Dropped::default(),
+        ),
     };
     Ok(MeshAsset {
         source,

@@ -58,10 +58,19 @@ pub(crate) fn world_hash(world: &World) -> Result<u64, SceneError> {
 }
 
 fn hash_mesh(hash: &mut Xxh3, mesh: &TriangleMesh) {
-    for coordinate in mesh.positions.iter().flat_map(|position| position.to_array()) {
+    for coordinate in mesh
+        .positions
+        .iter()
+        .flat_map(|position| position.to_array())
+    {
         hash.update(&coordinate.to_le_bytes());
     }
-    for index in mesh.triangles.as_flattened().iter().chain(&mesh.triangle_ids) {
+    for index in mesh
+        .triangles
+        .as_flattened()
+        .iter()
+        .chain(&mesh.triangle_ids)
+    {
         hash.update(&index.to_le_bytes());
     }
 }
@@ -82,10 +91,11 @@ fn to_ron(path: &Path, file: &SceneFile) -> Result<String, SceneError> {
         .compact_arrays(true)
         .new_line("\n");
     let text = options().to_string_pretty(file, pretty);
-    text.map(|text| text + "\n").map_err(|error| SceneError::Write {
-        path: path.to_owned(),
-        source: io::Error::other(error),
-    })
+    text.map(|text| text + "\n")
+        .map_err(|error| SceneError::Write {
+            path: path.to_owned(),
+            source: io::Error::other(error),
+        })
 }
 
 fn write_atomically(folder: &Path, path: &Path, content: &[u8]) -> io::Result<()> {
@@ -119,7 +129,10 @@ fn make_paths_relative(path: &Path, folder: &Path, file: &mut SceneFile) -> Resu
             Ok(())
         }
         None => {
-            let message = format!("cannot be written relative to the scene file: {}", asset.display());
+            let message = format!(
+                "cannot be written relative to the scene file: {}",
+                asset.display()
+            );
             let field = "path".to_owned();
             Err(invalid(path, place, Flaw { field, message }))
         }

@@ -1,6 +1,6 @@
 //! A bare model becomes a picture: ground, sky, lamp and a camera that shows all of it.
 //!
-//! The lamp is a sphere as large as the model: light is found by chance, so a small one would be
+//! The lamp is a sphere larger than the model: light is found by chance, so a small one would be
 //! noise for a long time.
 
 use std::path::Path;
@@ -10,9 +10,7 @@ use bevy_ecs::prelude::World;
 use glam::{DVec3, Vec3};
 
 use crate::assets::{Assets, MeshAsset, MeshSource, VolumeAsset, VolumeSource};
-use crate::components::{
-    ActiveCamera, Camera, MeshInstance, Name, Sphere, Transform, VoxelVolume,
-};
+use crate::components::{ActiveCamera, Camera, MeshInstance, Name, Sphere, Transform, VoxelVolume};
 use crate::error::SceneError;
 use crate::ids::spawn;
 use crate::material::Material;
@@ -64,11 +62,13 @@ pub(crate) fn load_obj_scene(path: &Path, world: &mut World) -> Result<LoadRepor
     let dropped = file.dropped_line(path).into_iter().collect();
     let root = spawn(world, (model_name(path), Transform::default()));
     for (index, part) in (0..).zip(file.parts) {
-        let mesh = world.get_resource_or_init::<Assets>().insert_mesh(MeshAsset {
-            source: MeshSource::FilePart(path.clone(), index),
-            mesh: part.mesh,
-            dropped: file.dropped,
-        });
+        let mesh = world
+            .get_resource_or_init::<Assets>()
+            .insert_mesh(MeshAsset {
+                source: MeshSource::FilePart(path.clone(), index),
+                mesh: part.mesh,
+                dropped: file.dropped,
+            });
         let shape = (Name(part.name), MeshInstance { mesh }, part.material);
         spawn(world, (shape, ChildOf(root)));
     }
@@ -91,17 +91,24 @@ pub(crate) fn load_vox_scene(path: &Path, world: &mut World) -> Result<LoadRepor
         dropped: file.dropped_line(path).into_iter().collect(),
         warnings: file.warnings,
     };
-    let volume = world.get_resource_or_init::<Assets>().insert_volume(VolumeAsset {
-        source: VolumeSource::File(path.clone()),
-        grid: file.grid,
-    });
+    let volume = world
+        .get_resource_or_init::<Assets>()
+        .insert_volume(VolumeAsset {
+            source: VolumeSource::File(path.clone()),
+            grid: file.grid,
+        });
     spawn(world, (model_name(path), VoxelVolume { volume }));
     set_the_stage(world, bounds);
     Ok(report)
 }
 
 fn model_name(path: &Path) -> Name {
-    Name(path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
+    Name(
+        path.file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned(),
+    )
 }
 
 fn set_the_stage(world: &mut World, bounds: Bounds) {
@@ -110,14 +117,16 @@ fn set_the_stage(world: &mut World, bounds: Bounds) {
     let lamp_direction = DVec3::new(-0.55, 1.0, 0.6).normalize();
     let lamp = (
         Name("lamp".to_owned()),
-        Transform::at(bounds.centre() + lamp_direction * 3.6 * radius),
-        Sphere { radius: 1.1 * radius },
-        Material::lamp(Vec3::new(1.0, 0.93, 0.82) * 13.0),
+        Transform::at(bounds.centre() + lamp_direction * 4.0 * radius),
+        Sphere {
+            radius: 1.7 * radius,
+        },
+        Material::lamp(Vec3::new(1.0, 0.93, 0.82) * 7.0),
     );
     spawn(world, lamp);
     world.insert_resource(Environment::Gradient {
-        zenith: Vec3::new(0.32, 0.42, 0.60),
-        horizon: Vec3::new(0.62, 0.67, 0.74),
+        zenith: Vec3::new(0.40, 0.46, 0.56),
+        horizon: Vec3::new(0.66, 0.68, 0.72),
         ground: Vec3::new(0.20, 0.19, 0.18),
     });
     let settings = *world.get_resource_or_init::<RenderSettings>();
@@ -133,7 +142,11 @@ fn spawn_ground(world: &mut World, bounds: Bounds) {
     let centre = bounds.centre();
     let transform = Transform {
         scale: DVec3::new(200.0 * radius, 1.0, 200.0 * radius),
-        ..Transform::at(DVec3::new(centre.x, bounds.min.y - radius / 1024.0, centre.z))
+        ..Transform::at(DVec3::new(
+            centre.x,
+            bounds.min.y - radius / 1024.0,
+            centre.z,
+        ))
     };
     let ground = (
         Name("ground".to_owned()),
@@ -167,8 +180,13 @@ fn spawn_camera(world: &mut World, bounds: Bounds, aspect: f64) {
 /// margin of a tenth.
 fn fitting_distance(bounds: Bounds, towards_camera: DVec3, vertical_fov: f64, aspect: f64) -> f64 {
     const MARGIN: f64 = 1.1;
-    let view = Transform::looking_at(towards_camera, DVec3::ZERO).rotation.inverse();
-    let (tan_y, tan_x) = ((vertical_fov * 0.5).tan(), (vertical_fov * 0.5).tan() * aspect);
+    let view = Transform::looking_at(towards_camera, DVec3::ZERO)
+        .rotation
+        .inverse();
+    let (tan_y, tan_x) = (
+        (vertical_fov * 0.5).tan(),
+        (vertical_fov * 0.5).tan() * aspect,
+    );
     bounds
         .corners()
         .map(|corner| {
@@ -184,19 +202,29 @@ mod tests {
 
     #[test]
     fn every_corner_is_in_the_picture_and_one_nearly_touches_its_edge() {
-        for size in [DVec3::ONE, DVec3::new(10.0, 0.1, 3.0), DVec3::new(1e-6, 1e-3, 0.0)] {
-            let bounds = Bounds { min: -size, max: size * 2.0 };
+        for size in [
+            DVec3::ONE,
+            DVec3::new(10.0, 0.1, 3.0),
+            DVec3::new(1e-6, 1e-3, 0.0),
+        ] {
+            let bounds = Bounds {
+                min: -size,
+                max: size * 2.0,
+            };
             let towards = DVec3::new(0.62, 0.42, 1.0).normalize();
             let (fov, aspect) = (0.6, 1.5);
             let distance = fitting_distance(bounds, towards, fov, aspect);
-            let camera = Transform::looking_at(bounds.centre() + towards * distance, bounds.centre());
+            let camera =
+                Transform::looking_at(bounds.centre() + towards * distance, bounds.centre());
             let edge = bounds
                 .corners()
                 .map(|corner| {
                     let p = camera.affine().inverse().transform_point3(corner);
                     assert!(p.z < 0.0);
                     let tan = (fov * 0.5).tan();
-                    (p.x / -p.z / (tan * aspect)).abs().max((p.y / -p.z / tan).abs())
+                    (p.x / -p.z / (tan * aspect))
+                        .abs()
+                        .max((p.y / -p.z / tan).abs())
                 })
                 .fold(0.0, f64::max);
             assert!((0.85..1.0).contains(&edge), "{edge}");

@@ -1,8 +1,8 @@
 //! Models of other programs: .obj through `tobj`, .vox through `dot_vox`.
 //!
 //! Files come from anywhere, so nothing in them is believed (robustness.md D2): lengths are checked
-//! before anything is allocated, walks are iterative and visit nothing twice, bad elements are left
-//! out and counted, and what cannot be understood is an error that names the place.
+//! before anything is allocated, walks are iterative and limited, bad elements are left out and
+//! counted, and what cannot be understood is an error that names the place.
 
 mod frame;
 mod mtl;
@@ -69,6 +69,8 @@ pub(crate) fn canonical(path: &Path) -> Result<PathBuf, SceneError> {
 
 /// How a file is called in messages and names: the last part of its path.
 pub(crate) fn file_name(path: &Path) -> String {
-    path.file_name()
-        .map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+    path.file_name().map_or_else(
+        || path.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
 }

@@ -91,7 +91,11 @@ impl ObjFile {
         for part in &self.parts {
             append(&mut whole, &part.mesh);
         }
-        let mut numbered: Vec<_> = whole.triangle_ids.into_iter().zip(whole.triangles).collect();
+        let mut numbered: Vec<_> = whole
+            .triangle_ids
+            .into_iter()
+            .zip(whole.triangles)
+            .collect();
         numbered.sort_unstable();
         (whole.triangle_ids, whole.triangles) = numbered.into_iter().unzip();
         whole
@@ -121,14 +125,16 @@ fn group(models: Vec<tobj::Model>, ids: &[u32], library: &mtl::Library) -> Vec<O
             continue;
         }
         let material_id = mesh.material_id;
-        let index = *found.entry((name, material_id)).or_insert_with_key(|(name, _)| {
-            parts.push(ObjPart {
-                name: library.part_name(name, material_id),
-                material: library.material(material_id),
-                mesh: TriangleMesh::default(),
+        let index = *found
+            .entry((name, material_id))
+            .or_insert_with_key(|(name, _)| {
+                parts.push(ObjPart {
+                    name: library.part_name(name, material_id),
+                    material: library.material(material_id),
+                    mesh: TriangleMesh::default(),
+                });
+                parts.len() - 1
             });
-            parts.len() - 1
-        });
         append(&mut parts[index].mesh, &triangles(&mesh, &mut ids));
     }
     parts
@@ -147,8 +153,11 @@ fn triangles(mesh: &tobj::Mesh, ids: &mut impl Iterator<Item = u32>) -> Triangle
 fn append(mesh: &mut TriangleMesh, more: &TriangleMesh) {
     let first = mesh.positions.len() as u32;
     mesh.positions.extend(&more.positions);
-    mesh.triangles
-        .extend(more.triangles.iter().map(|corners| corners.map(|index| index + first)));
+    mesh.triangles.extend(
+        more.triangles
+            .iter()
+            .map(|corners| corners.map(|index| index + first)),
+    );
     mesh.triangle_ids.extend(&more.triangle_ids);
 }
 

@@ -134,7 +134,9 @@ fn corner(word: &str, defined: usize) -> Result<Option<usize>, String> {
         Err(_) => return Err(format!("\"{word}\" is not a corner")),
     };
     let absolute = if index < 0 {
-        i64::try_from(defined).ok().and_then(|n| n.checked_add(index))
+        i64::try_from(defined)
+            .ok()
+            .and_then(|n| n.checked_add(index))
     } else {
         index.checked_sub(1)
     };

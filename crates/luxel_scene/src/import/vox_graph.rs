@@ -53,7 +53,8 @@ impl Placement {
     }
 
     fn rotate(&self, v: [i64; 3]) -> [i64; 3] {
-        self.rows.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+        self.rows
+            .map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
     }
 
     /// First `inner`, then `self`.
@@ -69,9 +70,8 @@ impl Placement {
     /// The cell of the world that a cell of a model of this `size` fills. A model turns about the
     /// corner of cells at ⌊size / 2⌋; in half voxels all of it is whole-numbered.
     pub(super) fn place(&self, cell: [u8; 3], size: [u32; 3]) -> [i64; 3] {
-        let doubled = [0, 1, 2].map(|axis| {
-            2 * i64::from(cell[axis]) + 1 - 2 * i64::from(size[axis] / 2)
-        });
+        let doubled =
+            [0, 1, 2].map(|axis| 2 * i64::from(cell[axis]) + 1 - 2 * i64::from(size[axis] / 2));
         let turned = self.rotate(doubled);
         [0, 1, 2].map(|axis| (turned[axis] - 1) / 2 + self.shift[axis])
     }
@@ -153,10 +153,17 @@ impl<'a> Walk<'a> {
         let data = self.data;
         while let Some((node, placement, depth)) = self.stack.pop() {
             match &data.scenes[node] {
-                SceneNode::Transform { attributes, frames, child, layer_id } => {
+                SceneNode::Transform {
+                    attributes,
+                    frames,
+                    child,
+                    layer_id,
+                } => {
                     let hidden = attributes.get("_hidden").is_some_and(|flag| flag == "1");
                     if !hidden && !self.hidden_layers.contains(layer_id) {
-                        let local = frames.first().map_or(Placement::IDENTITY, Placement::of_frame);
+                        let local = frames
+                            .first()
+                            .map_or(Placement::IDENTITY, Placement::of_frame);
                         self.push_id(*child, placement.after(&local), depth + 1)?;
                     }
                 }
@@ -193,7 +200,9 @@ impl<'a> Walk<'a> {
 
     fn push(&mut self, node: usize, placement: Placement, depth: u32) -> Result<(), SceneError> {
         if depth > MAX_DEPTH {
-            return Err(self.damaged(format!("contains itself or is nested deeper than {MAX_DEPTH}")));
+            return Err(self.damaged(format!(
+                "contains itself or is nested deeper than {MAX_DEPTH}"
+            )));
         }
         self.visits += 1;
         if self.visits > MAX_VISITS {
@@ -210,6 +219,8 @@ impl<'a> Walk<'a> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
 
     #[test]
@@ -244,7 +255,10 @@ mod tests {
     fn every_rotation_maps_a_model_onto_distinct_neighbouring_cells() {
         let size = [3, 2, 5];
         for rows in (0..128).filter_map(rows_of_byte) {
-            let placement = Placement { rows, shift: [7, -9, 2] };
+            let placement = Placement {
+                rows,
+                shift: [7, -9, 2],
+            };
             let mut cells = Vec::new();
             for x in 0..3 {
                 for y in 0..2 {
@@ -269,7 +283,10 @@ mod tests {
         let some: Vec<_> = (0..128)
             .filter_map(rows_of_byte)
             .zip(0..)
-            .map(|(rows, i)| Placement { rows, shift: [i, 2 * i - 9, 5 - i] })
+            .map(|(rows, i)| Placement {
+                rows,
+                shift: [i, 2 * i - 9, 5 - i],
+            })
             .collect();
         for a in &some {
             for b in &some {

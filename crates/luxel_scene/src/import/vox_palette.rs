@@ -29,7 +29,9 @@ pub(super) fn material(data: &DotVoxData, index: u8) -> Material {
         Some("_glass") => Material::dielectric(ior(number("_ri"), number("_ior"))),
         Some("_emit") => Material {
             surface: Surface::Lambert { albedo },
-            emission: albedo * share("_emit") * 4f32.powf(number("_flux").unwrap_or(0.0).clamp(0.0, 4.0)),
+            emission: albedo
+                * share("_emit")
+                * 4f32.powf(number("_flux").unwrap_or(0.0).clamp(0.0, 4.0)),
         },
         _ => Material::lambert(albedo),
     }
@@ -37,7 +39,9 @@ pub(super) fn material(data: &DotVoxData, index: u8) -> Material {
 
 /// `_ri` is an index of refraction, `_ior` one less.
 fn ior(ri: Option<f32>, ior: Option<f32>) -> f32 {
-    ri.or(ior.map(|ior| ior + 1.0)).unwrap_or(1.5).clamp(1.0, 3.0)
+    ri.or(ior.map(|ior| ior + 1.0))
+        .unwrap_or(1.5)
+        .clamp(1.0, 3.0)
 }
 
 fn linear(colour: &Color) -> Vec3 {

@@ -71,9 +71,10 @@ impl Scatter {
         let [kind, hue, tone, fuzz] = random([index, 0, self.seed, 2]).map(|x| x as f32);
         match kind {
             k if k < 0.6 => Material::lambert(colour(hue, 0.25 + 0.65 * tone)),
-            k if k < 0.85 => {
-                Material::metal(Vec3::splat(0.75).lerp(colour(hue, 0.9), 0.5), 0.4 * fuzz * fuzz)
-            }
+            k if k < 0.85 => Material::metal(
+                Vec3::splat(0.75).lerp(colour(hue, 0.9), 0.5),
+                0.4 * fuzz * fuzz,
+            ),
             _ => Material::dielectric(1.5),
         }
     }
@@ -86,7 +87,7 @@ fn colour(hue: f32, value: f32) -> Vec3 {
         wave.clamp(0.0, 1.0)
     };
     let pure = Vec3::new(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0));
-    Vec3::splat(0.12).lerp(pure, 0.8) * value
+    Vec3::splat(0.4).lerp(pure, 0.6) * value
 }
 
 /// The spheres so far, in boxes as wide as the largest sphere.

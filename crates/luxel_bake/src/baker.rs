@@ -1,0 +1,148 @@
+//! The schedule of systems, and how it is run.
+use std::sync::Arc;
+
+use bevy_ecs::prelude::*;
+use bevy_ecs::schedule::{LogLevel, ScheduleBuildSettings, SingleThreadedExecutor};
+use bevy_ecs::world::WorldId;
+use luxel_flat::FlatScene;
+use luxel_scene::{Assets, Environment, MeshAsset, RenderSettings, VolumeAsset};
+
+use crate::assets::{Built, build_assets};
+use crate::camera::{View, find_camera};
+use crate::cloud::Cloud;
+use crate::features::{Features, find_features};
+use crate::instances::{Instances, place_objects, write_instances};
+use crate::journal::{Complaints, Revision};
+use crate::materials::{MaterialSlots, shade};
+use crate::objects::{Touched, find_touched};
+use crate::propagate::propagate;
+use crate::publish::{Published, publish};
+use crate::report::{BakeReport, report};
+use crate::spheres::place_spheres;
+use crate::store::Heaps;
+use crate::tlas::{Tlas, update_tlas};
+use crate::{BakeCounters, BakeError};
+
+/// The steps of a run, one after the other.
+///
+/// `Shading` comes before `Geometry` and `Instances`, because their records name material slots.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BakeSet {
+    /// World transforms and visibility; which objects changed.
+    Propagate,
+    /// Material slots and records.
+    Shading,
+    /// Structures of meshes, volumes and the sphere cloud.
+    Geometry,
+    /// Camera, origin of tracer space, instance records, TLAS.
+    Instances,
+    /// What the scene calls for.
+    Features,
+    /// The snapshot.
+    Publish,
+}
+
+/// Puts what baking keeps between runs into a world, empty, and the scene's resources if they are missing.
+pub fn install(world: &mut World) {
+    ensure_scene_resources(world);
+    world.insert_resource(Revision::default());
+    world.insert_resource(BakeCounters::default());
+    world.insert_resource(Complaints::default());
+    world.insert_resource(Touched::default());
+    world.insert_resource(MaterialSlots::default());
+    world.insert_resource(Heaps::default());
+    world.insert_resource(Built::<MeshAsset>::default());
+    world.insert_resource(Built::<VolumeAsset>::default());
+    world.insert_resource(Cloud::default());
+    world.insert_resource(View::default());
+    world.insert_resource(Instances::default());
+    world.insert_resource(Tlas::default());
+    world.insert_resource(Features::default());
+    world.insert_resource(Published::default());
+}
+
+fn ensure_scene_resources(world: &mut World) {
+    world.init_resource::<Assets>();
+    world.init_resource::<Environment>();
+    world.init_resource::<RenderSettings>();
+}
+
+/// Keeps the flat scene of one world up to date; see the crate's text.
+pub struct Baker {
+    schedule: Schedule,
+    world: WorldId,
+}
+
+impl Baker {
+    /// A baker for a world, which it [`install`]s itself into. The first run takes in everything that is there.
+    ///
+    /// # Errors
+    /// [`BakeError::Schedule`] if the systems contradict each other.
+    pub fn new(world: &mut World) -> Result<Self, BakeError> {
+        install(world);
+        let mut schedule = schedule();
+        if let Err(error) = schedule.initialize(world) {
+            return Err(BakeError::Schedule(error.to_string(schedule.graph(), world)));
+        }
+        Ok(Self { schedule, world: world.id() })
+    }
+
+    /// Takes in what changed since the last run. Returns the same `Arc` if nothing did.
+    ///
+    /// Calls [`World::clear_trackers`]; nobody else may, or removals could be missed.
+    ///
+    /// # Errors
+    /// What keeps the scene from being shown. [`Self::latest`] stays what it was, nothing is lost, and the next run
+    /// goes on from there.
+    pub fn run(&mut self, world: &mut World) -> Result<Arc<FlatScene>, BakeError> {
+        if world.id() != self.world {
+            return Err(BakeError::OtherWorld);
+        }
+        ensure_scene_resources(world);
+        world.resource_mut::<Revision>().0 += 1;
+        self.schedule.run(world);
+        world.clear_trackers();
+        let published = world.resource::<Published>();
+        published.outcome.clone()?;
+        published.latest().cloned().ok_or(BakeError::NoCamera)
+    }
+
+    /// The last good scene, if there was one.
+    pub fn latest(&self, world: &World) -> Option<Arc<FlatScene>> {
+        world.get_resource::<Published>()?.latest().cloned()
+    }
+
+    /// Facts about the last good scene. Costs a walk through every structure.
+    pub fn report(&self, world: &World) -> BakeReport {
+        report(world)
+    }
+}
+
+fn schedule() -> Schedule {
+    let mut schedule = Schedule::default();
+    schedule.set_executor(SingleThreadedExecutor::new());
+    schedule.set_build_settings(ScheduleBuildSettings {
+        ambiguity_detection: LogLevel::Error,
+        ..ScheduleBuildSettings::default()
+    });
+    schedule.configure_sets(
+        (
+            BakeSet::Propagate,
+            BakeSet::Shading,
+            BakeSet::Geometry,
+            BakeSet::Instances,
+            BakeSet::Features,
+            BakeSet::Publish,
+        )
+            .chain(),
+    );
+    let geometry = (build_assets::<MeshAsset>, build_assets::<VolumeAsset>, place_spheres);
+    let instances = (find_camera, place_objects, write_instances, update_tlas);
+    schedule.add_systems((propagate, find_touched).chain().in_set(BakeSet::Propagate));
+    schedule.add_systems(shade.in_set(BakeSet::Shading));
+    schedule.add_systems(geometry.chain().in_set(BakeSet::Geometry));
+    schedule.add_systems(instances.chain().in_set(BakeSet::Instances));
+    schedule.add_systems(find_features.in_set(BakeSet::Features));
+    schedule.add_systems(publish.in_set(BakeSet::Publish));
+    schedule
+}

@@ -1,0 +1,141 @@
+//! What `luxel info` tells of a baked scene: counts, bytes, depths, and what is drawn otherwise than asked.
+use bevy_ecs::prelude::World;
+use luxel_flat::{FlatScene, KIND_MESH, KIND_VOXELS};
+use luxel_scene::{MeshAsset, VolumeAsset};
+use serde::Serialize;
+
+use crate::assets::Built;
+use crate::journal::Complaints;
+use crate::materials::MaterialSlots;
+use crate::publish::Published;
+
+/// Facts about the last published scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct BakeReport {
+    /// Spheres in the picture.
+    pub spheres: u64,
+    /// Mesh instances in the picture.
+    pub mesh_instances: u64,
+    /// Volume instances in the picture.
+    pub volume_instances: u64,
+    /// Triangles in the picture, each instance counted.
+    pub instanced_triangles: u64,
+    /// Entities with a material of their own.
+    pub materials: u64,
+    /// Deepest level of the TLAS; the root is level 0.
+    pub tlas_depth: u32,
+    /// Deepest level of the sphere octree.
+    pub octree_depth: u32,
+    /// Meshes in use.
+    pub meshes: Vec<MeshFacts>,
+    /// Volumes in use.
+    pub volumes: Vec<VolumeFacts>,
+    /// Bytes of every heap, by name.
+    pub bytes: Vec<(&'static str, u64)>,
+    /// What is drawn otherwise than the scene says, one line each.
+    pub warnings: Vec<String>,
+}
+
+/// Facts about a mesh in use.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct MeshFacts {
+    /// Asset id.
+    pub asset: u32,
+    /// Triangles.
+    pub triangles: u32,
+    /// Nodes of its BVH.
+    pub nodes: u32,
+    /// Deepest level of its BVH; the root is level 0.
+    pub depth: u32,
+}
+
+/// Facts about a volume in use.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct VolumeFacts {
+    /// Asset id.
+    pub asset: u32,
+    /// Solid voxels.
+    pub voxels: u64,
+    /// Nodes of its octree.
+    pub nodes: u32,
+    /// Levels of its octree below the root.
+    pub levels: u32,
+    /// Palette entries that a voxel uses.
+    pub materials: u32,
+}
+
+/// The facts of a world that a baker ran on. Costs a walk through every structure.
+pub(crate) fn report(world: &World) -> BakeReport {
+    let complaints = world.get_resource::<Complaints>();
+    let warnings = complaints.map_or(Vec::new(), |c| c.warnings.values().map(ToString::to_string).collect());
+    let Some(scene) = world.get_resource::<Published>().and_then(Published::latest) else {
+        return BakeReport { warnings, ..BakeReport::default() };
+    };
+    let live = |kind: u32| scene.instances.as_slice().iter().filter(move |i| i.kind == kind && i.node_count > 0);
+    BakeReport {
+        spheres: scene.spheres.as_slice().iter().filter(|sphere| sphere.radius > 0.0).count() as u64,
+        mesh_instances: live(KIND_MESH).count() as u64,
+        volume_instances: live(KIND_VOXELS).count() as u64,
+        instanced_triangles: live(KIND_MESH).map(|mesh| u64::from(mesh.primitive_count)).sum(),
+        materials: world.get_resource::<MaterialSlots>().map_or(0, |slots| slots.len() as u64),
+        tlas_depth: luxel_accel::depth(scene.tlas()),
+        octree_depth: octree_depth(scene),
+        meshes: meshes(world, scene),
+        volumes: volumes(world),
+        bytes: bytes(scene),
+        warnings,
+    }
+}
+
+fn meshes(world: &World, scene: &FlatScene) -> Vec<MeshFacts> {
+    let Some(built) = world.get_resource::<Built<MeshAsset>>() else { return Vec::new() };
+    (built.iter())
+        .map(|(id, _, mesh)| MeshFacts {
+            asset: id.0,
+            triangles: mesh.triangles.count,
+            nodes: mesh.nodes.count,
+            depth: scene.bvh_nodes.as_slice().get(mesh.nodes.range()).map_or(0, luxel_accel::depth),
+        })
+        .collect()
+}
+
+fn volumes(world: &World) -> Vec<VolumeFacts> {
+    let Some(built) = world.get_resource::<Built<VolumeAsset>>() else { return Vec::new() };
+    (built.iter())
+        .map(|(id, asset, volume)| VolumeFacts {
+            asset: id.0,
+            voxels: asset.grid.voxels.len() as u64,
+            nodes: volume.nodes.count,
+            levels: volume.levels,
+            materials: volume.used.len() as u32,
+        })
+        .collect()
+}
+
+fn octree_depth(scene: &FlatScene) -> u32 {
+    let nodes = scene.octree_nodes.as_slice();
+    let mut deepest = 0;
+    let mut open = if nodes.is_empty() { Vec::new() } else { vec![(0u32, 0)] };
+    while let Some((node, depth)) = open.pop() {
+        deepest = deepest.max(depth);
+        let node = nodes[node as usize];
+        let children = (0..8).filter(|child| node.child_mask & (1 << child) != 0);
+        open.extend(children.map(|child| (node.first_child + child, depth + 1)));
+    }
+    deepest
+}
+
+fn bytes(scene: &FlatScene) -> Vec<(&'static str, u64)> {
+    [
+        ("bvh_nodes", scene.bvh_nodes.bytes()),
+        ("instances", scene.instances.bytes()),
+        ("octree_nodes", scene.octree_nodes.bytes()),
+        ("spheres", scene.spheres.bytes()),
+        ("triangles", scene.triangles.bytes()),
+        ("svo_nodes", scene.svo_nodes.bytes()),
+        ("materials", scene.materials.bytes()),
+        ("material_params", scene.material_params.bytes()),
+    ]
+    .map(|(name, bytes)| (name, bytes as u64))
+    .to_vec()
+}

@@ -1,0 +1,169 @@
+//! The graph: which nodes there are, in which sets they stand, and why each runs.
+use bevy_ecs::prelude::*;
+use bevy_ecs::schedule::{LogLevel, ScheduleBuildSettings, ScheduleConfigs, SingleThreadedExecutor};
+use bevy_ecs::system::ScheduleSystem;
+use luxel_flat::{Feature, FeatureSet};
+use luxel_gpu::GpuError;
+
+use crate::nodes;
+
+/// The stages of a frame, run in this order.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum GraphSet {
+    /// Uniforms for the slice.
+    Begin,
+    /// Paths start.
+    Generate,
+    /// The camera's rays meet the scene.
+    CameraRays,
+    /// First-hit outputs.
+    FirstHits,
+    /// Shading and further rays, bounce by bounce.
+    Bounces,
+    /// Samples go to the film.
+    Accumulate,
+    /// Where the next samples go.
+    Refine,
+    /// The film becomes a picture.
+    Resolve,
+}
+
+/// A node of the graph.
+pub struct NodeRow {
+    /// Name, as in `luxel graph` and in pass times.
+    pub name: &'static str,
+    /// Its stage.
+    pub set: GraphSet,
+    /// Kernels it dispatches.
+    pub kernels: &'static [&'static str],
+    /// Runs only with this feature; always if `None`.
+    pub feature: Option<Feature>,
+    /// Why it runs, as the end of a sentence that begins with "because".
+    pub because: &'static str,
+    /// The system.
+    system: fn() -> ScheduleConfigs<ScheduleSystem>,
+}
+
+/// Every node, in the order of its stage.
+pub const NODES: &[NodeRow] = &[
+    NodeRow {
+        name: "begin",
+        set: GraphSet::Begin,
+        kernels: &[],
+        feature: None,
+        because: "the kernels read which pixels and which sample they work on",
+        system: || nodes::begin.pipe(keep_error).run_if(tracing),
+    },
+    NodeRow {
+        name: "generate",
+        set: GraphSet::Generate,
+        kernels: &["generate"],
+        feature: None,
+        because: "every path starts at the camera",
+        system: || nodes::generate.pipe(keep_error).run_if(tracing),
+    },
+    NodeRow {
+        name: "camera_rays",
+        set: GraphSet::CameraRays,
+        kernels: &["intersect"],
+        feature: None,
+        because: "every path needs to know what the camera sees",
+        system: || nodes::camera_rays.pipe(keep_error).run_if(tracing),
+    },
+    NodeRow {
+        name: "first_hits",
+        set: GraphSet::FirstHits,
+        kernels: &["first_hits"],
+        feature: Some(Feature::Aovs),
+        because: "first-hit outputs were asked for",
+        system: || nodes::first_hits.pipe(keep_error).run_if(tracing).run_if(has_aovs),
+    },
+    NodeRow {
+        name: "bounces",
+        set: GraphSet::Bounces,
+        kernels: &["shade", "intersect"],
+        feature: None,
+        because: "light is gathered where a ray ends, and the path may go on",
+        system: || nodes::bounces.pipe(keep_error).run_if(tracing),
+    },
+    NodeRow {
+        name: "accumulate",
+        set: GraphSet::Accumulate,
+        kernels: &["accumulate"],
+        feature: None,
+        because: "finished paths are samples of the picture",
+        system: || nodes::accumulate.pipe(keep_error).run_if(tracing),
+    },
+    NodeRow {
+        name: "resolve",
+        set: GraphSet::Resolve,
+        kernels: &["resolve"],
+        feature: None,
+        because: "a picture is shown when one is asked for",
+        system: || nodes::resolve.pipe(keep_error).run_if(resolving),
+    },
+];
+
+/// What a frame is for.
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) enum Purpose {
+    /// Adding samples.
+    #[default]
+    Trace,
+    /// Making the picture.
+    Resolve,
+}
+
+/// The features that the pipelines were made for.
+#[derive(Resource, Clone, Copy, Default)]
+pub(crate) struct ActiveFeatures(pub(crate) FeatureSet);
+
+/// The first error of a frame.
+#[derive(Resource, Default)]
+pub(crate) struct Failure(pub(crate) Option<GpuError>);
+
+fn tracing(purpose: Res<Purpose>) -> bool {
+    *purpose == Purpose::Trace
+}
+
+fn resolving(purpose: Res<Purpose>) -> bool {
+    *purpose == Purpose::Resolve
+}
+
+fn has_aovs(features: Res<ActiveFeatures>) -> bool {
+    features.0.has(Feature::Aovs)
+}
+
+fn keep_error(In(result): In<Result<(), GpuError>>, mut failure: ResMut<Failure>) {
+    if let Err(error) = result {
+        failure.0.get_or_insert(error);
+    }
+}
+
+/// The schedule, its nodes added in the given order of [`NODES`]. The order makes no difference: a test shuffles
+/// it.
+pub fn schedule_in_order(order: impl IntoIterator<Item = usize>) -> Schedule {
+    let mut schedule = Schedule::default();
+    schedule.set_executor(SingleThreadedExecutor::new());
+    schedule.set_build_settings(ScheduleBuildSettings {
+        ambiguity_detection: LogLevel::Error,
+        ..Default::default()
+    });
+    schedule.configure_sets(
+        (
+            GraphSet::Begin,
+            GraphSet::Generate,
+            GraphSet::CameraRays,
+            GraphSet::FirstHits,
+            GraphSet::Bounces,
+            GraphSet::Accumulate,
+            GraphSet::Refine,
+            GraphSet::Resolve,
+        )
+            .chain(),
+    );
+    for row in order.into_iter().map(|index| &NODES[index]) {
+        schedule.add_systems((row.system)().in_set(row.set));
+    }
+    schedule
+}

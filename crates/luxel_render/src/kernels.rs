@@ -1,0 +1,76 @@
+//! The kernels, and the pipelines made of them for a set of features.
+use std::sync::Arc;
+
+use bevy_ecs::prelude::Resource;
+use luxel_flat::{Feature, FeatureSet, WORKGROUP_SIZE};
+use luxel_gpu::{Gpu, GpuError, Kernel, Overrides, Pipeline, PipelineCache};
+
+/// A kernel and when it is needed.
+#[derive(Clone, Copy, Debug)]
+pub struct KernelRow {
+    /// What to link.
+    pub kernel: Kernel,
+    /// Needed only with this feature; always if `None`.
+    pub feature: Option<Feature>,
+    /// Most functions that may be linked into it: compile time on software drivers grows faster than linearly
+    /// with them (platform.md §2).
+    pub max_functions: usize,
+}
+
+const fn kernel(module: &'static str, entry: &'static str) -> Kernel {
+    Kernel { module, entry, workgroup_size: [WORKGROUP_SIZE, 1, 1] }
+}
+
+/// Starts paths.
+pub(crate) const GENERATE: Kernel = kernel("package::kernels::generate", "generate");
+/// Finds closest hits.
+pub(crate) const INTERSECT: Kernel = kernel("package::kernels::intersect", "intersect");
+/// Writes first-hit outputs.
+pub(crate) const FIRST_HITS: Kernel = kernel("package::kernels::first_hits", "first_hits");
+/// Shades hits.
+pub(crate) const SHADE: Kernel = kernel("package::kernels::shade", "shade");
+/// Adds samples to the film.
+pub(crate) const ACCUMULATE: Kernel = kernel("package::kernels::accumulate", "accumulate");
+/// Makes the picture to show.
+pub(crate) const RESOLVE: Kernel = kernel("package::kernels::resolve", "resolve");
+
+/// Every kernel of the graph.
+pub const KERNELS: &[KernelRow] = &[
+    KernelRow { kernel: GENERATE, feature: None, max_functions: 12 },
+    KernelRow { kernel: INTERSECT, feature: None, max_functions: 60 },
+    KernelRow { kernel: FIRST_HITS, feature: Some(Feature::Aovs), max_functions: 24 },
+    KernelRow { kernel: SHADE, feature: None, max_functions: 48 },
+    KernelRow { kernel: ACCUMULATE, feature: None, max_functions: 12 },
+    KernelRow { kernel: RESOLVE, feature: None, max_functions: 24 },
+];
+
+/// A set of features as the conditions of a WESL compilation.
+pub fn conditions(features: FeatureSet) -> luxel_gpu::FeatureSet {
+    features.conditions().collect()
+}
+
+/// The pipelines that the current features need, in the order of [`KERNELS`].
+#[derive(Resource, Default)]
+pub(crate) struct Pipelines(Vec<(Kernel, Arc<Pipeline>)>);
+
+impl Pipelines {
+    /// Compiles what is missing in the cache.
+    pub(crate) fn make(gpu: &Gpu, cache: &mut PipelineCache, features: FeatureSet) -> Result<Self, GpuError> {
+        let conditions = conditions(features);
+        let needed = KERNELS.iter().filter(|row| row.feature.is_none_or(|f| features.has(f)));
+        let pipelines = needed.map(|row| {
+            let pipeline = cache.get(gpu, &row.kernel, &conditions, &Overrides::default())?;
+            Ok((row.kernel, pipeline))
+        });
+        pipelines.collect::<Result<_, GpuError>>().map(Self)
+    }
+
+    /// The pipeline of a kernel that the current features need.
+    pub(crate) fn get(&self, kernel: &Kernel) -> Result<&Pipeline, GpuError> {
+        let found = self.0.iter().find(|(k, _)| k == kernel);
+        found.map(|(_, pipeline)| pipeline.as_ref()).ok_or_else(|| GpuError::Internal {
+            what: format!("kernel {}", kernel.entry),
+            message: "it was not compiled for these features".to_owned(),
+        })
+    }
+}

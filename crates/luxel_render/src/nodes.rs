@@ -1,0 +1,90 @@
+//! The nodes: each a system that records its passes into the frame.
+use bevy_ecs::prelude::*;
+use luxel_flat::{SliceParams, WORKGROUP_SIZE};
+use luxel_gpu::{Frame, Gpu, GpuError, Kernel, workgroups_for};
+
+use crate::kernels::{ACCUMULATE, FIRST_HITS, GENERATE, INTERSECT, Pipelines, RESOLVE, SHADE};
+use crate::{GpuFilm, GpuScene};
+
+/// The device.
+#[derive(Resource)]
+pub(crate) struct Device(pub(crate) Gpu);
+
+/// The open frame.
+#[derive(Resource)]
+pub(crate) struct OpenFrame(pub(crate) Frame);
+
+/// What this frame works on.
+#[derive(Resource, Default)]
+pub(crate) struct Work {
+    /// Pixels and sample.
+    pub(crate) slice: SliceParams,
+    /// The film tile they belong to.
+    pub(crate) tile: usize,
+    /// Surfaces that a path may meet.
+    pub(crate) max_depth: u32,
+}
+
+/// What every node that dispatches needs.
+#[derive(bevy_ecs::system::SystemParam)]
+pub(crate) struct Dispatch<'w> {
+    device: Res<'w, Device>,
+    frame: ResMut<'w, OpenFrame>,
+    pipelines: Res<'w, Pipelines>,
+    scene: Res<'w, GpuScene>,
+    film: Res<'w, GpuFilm>,
+    work: Res<'w, Work>,
+}
+
+impl Dispatch<'_> {
+    /// Records one pass of a kernel, one thread per pixel of the slice.
+    fn over_slice(&mut self, kernel: &Kernel) -> Result<(), GpuError> {
+        let gpu = &self.device.0;
+        let pipeline = self.pipelines.get(kernel)?;
+        let resources = self.film.resources(self.scene.resources(), self.work.tile);
+        let bindings = pipeline.bind(gpu, &resources)?;
+        let pixels = self.work.slice.pixel_count.into();
+        let workgroups = workgroups_for(pixels, WORKGROUP_SIZE, gpu.limits())?;
+        self.frame.0.compute(kernel.entry, pipeline, &bindings, workgroups)
+    }
+}
+
+/// Tells the kernels which pixels and which sample they work on.
+pub(crate) fn begin(device: Res<Device>, scene: Res<GpuScene>, work: Res<Work>) -> Result<(), GpuError> {
+    scene.write_slice(&device.0, &work.slice)
+}
+
+/// Starts a path per pixel.
+pub(crate) fn generate(mut dispatch: Dispatch) -> Result<(), GpuError> {
+    dispatch.over_slice(&GENERATE)
+}
+
+/// Traces the camera's rays.
+pub(crate) fn camera_rays(mut dispatch: Dispatch) -> Result<(), GpuError> {
+    dispatch.over_slice(&INTERSECT)
+}
+
+/// Writes what they met.
+pub(crate) fn first_hits(mut dispatch: Dispatch) -> Result<(), GpuError> {
+    dispatch.over_slice(&FIRST_HITS)
+}
+
+/// Shades, and traces what was scattered, until no path can go on.
+pub(crate) fn bounces(mut dispatch: Dispatch) -> Result<(), GpuError> {
+    dispatch.over_slice(&SHADE)?;
+    for _ in 1..dispatch.work.max_depth {
+        dispatch.over_slice(&INTERSECT)?;
+        dispatch.over_slice(&SHADE)?;
+    }
+    Ok(())
+}
+
+/// Adds the finished paths to the film.
+pub(crate) fn accumulate(mut dispatch: Dispatch) -> Result<(), GpuError> {
+    dispatch.over_slice(&ACCUMULATE)
+}
+
+/// Makes the picture of a tile.
+pub(crate) fn resolve(mut dispatch: Dispatch) -> Result<(), GpuError> {
+    dispatch.over_slice(&RESOLVE)
+}
