@@ -30,13 +30,13 @@ fn cells(svo: &Svo) -> Cells {
             let [r, g, b, _] = node.color.to_le_bytes();
             cells.insert(cell, ([r, g, b], node.material));
         }
-        let mut child = node.first_child as usize;
-        for octant in (0..8u16).filter(|o| node.child_mask >> o & 1 == 1) {
+        let octants = (0..8u16).filter(|o| node.child_mask >> o & 1 == 1);
+        for (child, octant) in (node.first_child as usize..).zip(octants) {
+            let half = |axis: usize| octant >> axis & 1;
             open.push((
                 child,
-                std::array::from_fn(|k| 2 * cell[k] + (octant >> k & 1)),
+                std::array::from_fn(|axis| 2 * cell[axis] + half(axis)),
             ));
-            child += 1;
         }
     }
     cells

@@ -61,6 +61,15 @@ shared_const! {
     /// [`Path::state`](crate::Path): the ray enters the excluded primitive.
     pub const PATH_ENTERING: u32 = 4;
 
+    /// [`DisplayParams::tone_map`](crate::DisplayParams): clip at white.
+    pub const TONE_MAP_NONE: u32 = 0;
+    /// [`DisplayParams::tone_map`](crate::DisplayParams): Reinhard's curve on luminance.
+    pub const TONE_MAP_REINHARD: u32 = 1;
+    /// [`DisplayParams::tone_map`](crate::DisplayParams): a film-like fit.
+    pub const TONE_MAP_ACES: u32 = 2;
+    /// [`DisplayParams::tone_map`](crate::DisplayParams): a soft, desaturating curve.
+    pub const TONE_MAP_AGX: u32 = 3;
+
     /// A film cascade's `group` is folded into its `total` every `CASCADE_FOLD`² samples.
     pub const CASCADE_FOLD: u32 = 64;
     /// Threads of a workgroup in every path tracing kernel.

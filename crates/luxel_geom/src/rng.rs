@@ -22,14 +22,15 @@ pub fn bounce_block(k: u32) -> u32 {
 /// Four words that look independent for every change of the address.
 #[inline]
 pub fn pcg4d(address: [u32; 4]) -> [u32; 4] {
-    let mut v = address.map(|x| x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
-    for _ in 0..2 {
-        v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[3]));
-        v[1] = v[1].wrapping_add(v[2].wrapping_mul(v[0]));
-        v[2] = v[2].wrapping_add(v[0].wrapping_mul(v[1]));
-        v[3] = v[3].wrapping_add(v[1].wrapping_mul(v[2]));
-        v = v.map(|x| x ^ (x >> 16));
-    }
+    let v = address.map(|x| x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    mix(mix(v).map(|x| x ^ (x >> 16)))
+}
+
+fn mix(mut v: [u32; 4]) -> [u32; 4] {
+    v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[3]));
+    v[1] = v[1].wrapping_add(v[2].wrapping_mul(v[0]));
+    v[2] = v[2].wrapping_add(v[0].wrapping_mul(v[1]));
+    v[3] = v[3].wrapping_add(v[1].wrapping_mul(v[2]));
     v
 }
 

@@ -5,7 +5,7 @@ use bevy_ecs::system::ScheduleSystem;
 use luxel_flat::{Feature, FeatureSet};
 use luxel_gpu::GpuError;
 
-use crate::nodes;
+use crate::nodes::{self, Purpose, Work};
 
 /// The stages of a frame, run in this order.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -52,7 +52,7 @@ pub const NODES: &[NodeRow] = &[
         kernels: &[],
         feature: None,
         because: "the kernels read which pixels and which sample they work on",
-        system: || nodes::begin.pipe(keep_error).run_if(tracing),
+        system: || nodes::begin.pipe(keep_error).into_configs(),
     },
     NodeRow {
         name: "generate",
@@ -60,7 +60,7 @@ pub const NODES: &[NodeRow] = &[
         kernels: &["generate"],
         feature: None,
         because: "every path starts at the camera",
-        system: || nodes::generate.pipe(keep_error).run_if(tracing),
+        system: || nodes::generate.pipe(keep_error).run_if(starting),
     },
     NodeRow {
         name: "camera_rays",
@@ -68,7 +68,7 @@ pub const NODES: &[NodeRow] = &[
         kernels: &["intersect"],
         feature: None,
         because: "every path needs to know what the camera sees",
-        system: || nodes::camera_rays.pipe(keep_error).run_if(tracing),
+        system: || nodes::camera_rays.pipe(keep_error).run_if(starting),
     },
     NodeRow {
         name: "first_hits",
@@ -76,7 +76,7 @@ pub const NODES: &[NodeRow] = &[
         kernels: &["first_hits"],
         feature: Some(Feature::Aovs),
         because: "first-hit outputs were asked for",
-        system: || nodes::first_hits.pipe(keep_error).run_if(tracing).run_if(has_aovs),
+        system: || nodes::first_hits.pipe(keep_error).run_if(starting).run_if(has_aovs),
     },
     NodeRow {
         name: "bounces",
@@ -92,7 +92,7 @@ pub const NODES: &[NodeRow] = &[
         kernels: &["accumulate"],
         feature: None,
         because: "finished paths are samples of the picture",
-        system: || nodes::accumulate.pipe(keep_error).run_if(tracing),
+        system: || nodes::accumulate.pipe(keep_error).run_if(finishing),
     },
     NodeRow {
         name: "resolve",
@@ -104,16 +104,6 @@ pub const NODES: &[NodeRow] = &[
     },
 ];
 
-/// What a frame is for.
-#[derive(Resource, Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(crate) enum Purpose {
-    /// Adding samples.
-    #[default]
-    Trace,
-    /// Making the picture.
-    Resolve,
-}
-
 /// The features that the pipelines were made for.
 #[derive(Resource, Clone, Copy, Default)]
 pub(crate) struct ActiveFeatures(pub(crate) FeatureSet);
@@ -122,12 +112,20 @@ pub(crate) struct ActiveFeatures(pub(crate) FeatureSet);
 #[derive(Resource, Default)]
 pub(crate) struct Failure(pub(crate) Option<GpuError>);
 
-fn tracing(purpose: Res<Purpose>) -> bool {
-    *purpose == Purpose::Trace
+fn starting(work: Res<Work>) -> bool {
+    matches!(work.purpose, Purpose::Trace { starts: true, .. })
 }
 
-fn resolving(purpose: Res<Purpose>) -> bool {
-    *purpose == Purpose::Resolve
+fn tracing(work: Res<Work>) -> bool {
+    matches!(work.purpose, Purpose::Trace { .. })
+}
+
+fn finishing(work: Res<Work>) -> bool {
+    matches!(work.purpose, Purpose::Trace { finishes: true, .. })
+}
+
+fn resolving(work: Res<Work>) -> bool {
+    work.purpose == Purpose::Resolve
 }
 
 fn has_aovs(features: Res<ActiveFeatures>) -> bool {

@@ -14,6 +14,28 @@ pub(crate) struct Device(pub(crate) Gpu);
 #[derive(Resource)]
 pub(crate) struct OpenFrame(pub(crate) Frame);
 
+/// What a frame is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// Adding a sample to the slice's pixels, or a part of that.
+    Trace {
+        /// Paths start here.
+        starts: bool,
+        /// Surfaces that are shaded.
+        bounces: u32,
+        /// Paths end here and go to the film.
+        finishes: bool,
+    },
+    /// Making the picture.
+    Resolve,
+}
+
+impl Default for Purpose {
+    fn default() -> Self {
+        Self::Trace { starts: false, bounces: 0, finishes: false }
+    }
+}
+
 /// What this frame works on.
 #[derive(Resource, Default)]
 pub(crate) struct Work {
@@ -21,8 +43,8 @@ pub(crate) struct Work {
     pub(crate) slice: SliceParams,
     /// The film tile they belong to.
     pub(crate) tile: usize,
-    /// Surfaces that a path may meet.
-    pub(crate) max_depth: u32,
+    /// What is done for them in this frame.
+    pub(crate) purpose: Purpose,
 }
 
 /// What every node that dispatches needs.
@@ -69,11 +91,13 @@ pub(crate) fn first_hits(mut dispatch: Dispatch) -> Result<(), GpuError> {
     dispatch.over_slice(&FIRST_HITS)
 }
 
-/// Shades, and traces what was scattered, until no path can go on.
+/// Shades, and traces what was scattered, as often as this frame is to.
 pub(crate) fn bounces(mut dispatch: Dispatch) -> Result<(), GpuError> {
-    dispatch.over_slice(&SHADE)?;
-    for _ in 1..dispatch.work.max_depth {
-        dispatch.over_slice(&INTERSECT)?;
+    let Purpose::Trace { starts, bounces, .. } = dispatch.work.purpose else { return Ok(()) };
+    for bounce in 0..bounces {
+        if bounce > 0 || !starts {
+            dispatch.over_slice(&INTERSECT)?;
+        }
         dispatch.over_slice(&SHADE)?;
     }
     Ok(())

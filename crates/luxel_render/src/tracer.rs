@@ -7,15 +7,18 @@ use luxel_film::tracer::{
     Backend, BackendFacts, FilmKey, PassTime, Progress, TraceError, TraceRequest, TraceStats, Tracer,
 };
 use luxel_film::{Display, Film};
-use luxel_flat::{Counters, DisplayParams, Feature, SliceParams, WORKGROUP_SIZE};
+use luxel_flat::{Counter, Counters, DisplayParams, Feature, SliceParams, WORKGROUP_SIZE};
 use luxel_gpu::{
     Frame, Gpu, GpuError, NumericsReport, PassTimes, PipelineCache, ShaderLibrary, SlicePolicy, Slicer, probe,
 };
 
-use crate::graph::{ActiveFeatures, Failure, NODES, Purpose, schedule_in_order};
+use crate::graph::{ActiveFeatures, Failure, NODES, schedule_in_order};
 use crate::kernels::Pipelines;
-use crate::nodes::{Device, OpenFrame, Work};
+use crate::nodes::{Device, OpenFrame, Purpose, Work};
 use crate::{GpuFilm, GpuScene};
+
+/// Most surfaces that are shaded in one submit.
+const MAX_BOUNCES: u32 = 24;
 
 /// Path tracing by compute kernels.
 ///
@@ -66,7 +69,6 @@ impl GpuTracer {
         world.insert_resource(OpenFrame(Frame::new(gpu)));
         world.insert_resource(GpuScene::new(gpu)?);
         world.init_resource::<Work>();
-        world.init_resource::<Purpose>();
         world.init_resource::<Failure>();
         world.init_resource::<ActiveFeatures>();
         Ok(Self {
@@ -132,25 +134,55 @@ impl GpuTracer {
         let pixel_count = (planned.units * u64::from(WORKGROUP_SIZE)).min(most) as u32;
         let slice =
             SliceParams { pixel_first: tile_first + job.pixel, pixel_count, sample: job.sample, tile_first };
-        let work = Work { slice, tile: job.tile, max_depth: job.request.scene.params.max_depth };
+        let (tile, max_depth) = (job.tile, job.request.scene.params.max_depth);
         self.world.resource_mut::<GpuFilm>().reserve_paths(&self.gpu, pixel_count)?;
-        self.world.insert_resource(work);
-        let times = self.run(Purpose::Trace)?;
-        let Some(job) = self.job.as_mut() else { return Err(no_scene()) };
-        job.slicer.record(planned, times.busy_ms());
-        job.add_times(&times);
-        job.step(pixel_count, tile_count, self.world.resource::<GpuFilm>().tile_count());
+        let busy_ms = self.trace_sample(slice, tile, max_depth)?;
+        let tile_total = self.world.resource::<GpuFilm>().tile_count();
+        let job = self.job.as_mut().ok_or_else(no_scene)?;
+        job.slicer.record(planned, busy_ms);
+        job.step(pixel_count, tile_count, tile_total);
         Ok(())
     }
 
-    /// Runs the graph once and waits for the submit.
-    fn run(&mut self, purpose: Purpose) -> Result<PassTimes, GpuError> {
-        self.world.insert_resource(purpose);
+    /// Traces the paths of a slice to their ends. Deep paths take several submits, the last of them as soon as
+    /// none goes on. Returns the milliseconds of the longest submit.
+    fn trace_sample(&mut self, slice: SliceParams, tile: usize, max_depth: u32) -> Result<f64, GpuError> {
+        let bounces = max_depth.min(MAX_BOUNCES);
+        let finishes = bounces == max_depth;
+        let mut longest_ms = self.run(Work { slice, tile, purpose: Purpose::Trace { starts: true, bounces, finishes } })?;
+        if finishes {
+            return Ok(longest_ms);
+        }
+        let mut left = max_depth - bounces;
+        let mut scattered = self.scattered_rays()?;
+        while left > 0 {
+            let bounces = left.min(MAX_BOUNCES);
+            let purpose = Purpose::Trace { starts: false, bounces, finishes: false };
+            longest_ms = longest_ms.max(self.run(Work { slice, tile, purpose })?);
+            let before = std::mem::replace(&mut scattered, self.scattered_rays()?);
+            left = if scattered == before { 0 } else { left - bounces };
+        }
+        let purpose = Purpose::Trace { starts: false, bounces: 0, finishes: true };
+        Ok(longest_ms.max(self.run(Work { slice, tile, purpose })?))
+    }
+
+    fn scattered_rays(&self) -> Result<u64, GpuError> {
+        let counters = self.world.resource::<GpuScene>().counters(&self.gpu)?;
+        Ok(counters[Counter::ScatteredRays])
+    }
+
+    /// Runs the graph once, waits for the submit, and returns the milliseconds that it took.
+    fn run(&mut self, work: Work) -> Result<f64, GpuError> {
+        self.world.insert_resource(work);
         self.schedule.run(&mut self.world);
         if let Some(error) = self.world.resource_mut::<Failure>().0.take() {
             return Err(error);
         }
-        self.world.resource_mut::<OpenFrame>().0.submit()?.wait(&self.gpu)
+        let times = self.world.resource_mut::<OpenFrame>().0.submit()?.wait(&self.gpu)?;
+        if let Some(job) = &mut self.job {
+            job.add_times(&times);
+        }
+        Ok(times.busy_ms())
     }
 
     fn advance_job(&mut self, budget_secs: f64, until_samples: u32) -> Result<Progress, GpuError> {
@@ -178,8 +210,7 @@ impl GpuTracer {
     /// # Errors
     /// When the device fails.
     pub fn resolve(&mut self, display: &Display) -> Result<Vec<[u8; 3]>, GpuError> {
-        let job = self.job.as_ref().ok_or_else(no_scene)?;
-        let max_depth = job.request.scene.params.max_depth;
+        self.job.as_ref().ok_or_else(no_scene)?;
         let params = DisplayParams {
             exposure: display.exposure.exp2(),
             tone_map: display.tone_map as u32,
@@ -192,8 +223,7 @@ impl GpuTracer {
             film.reserve_resolved(&self.gpu, tile)?;
             let (first, count) = film.tile_span(tile);
             let slice = SliceParams { pixel_first: first, pixel_count: count, sample: 0, tile_first: first };
-            self.world.insert_resource(Work { slice, tile, max_depth });
-            self.run(Purpose::Resolve)?;
+            self.run(Work { slice, tile, purpose: Purpose::Resolve })?;
             let packed = self.world.resource::<GpuFilm>().read_resolved(&self.gpu, tile)?;
             picture.extend(packed.iter().map(|p| [*p as u8, (*p >> 8) as u8, (*p >> 16) as u8]));
         }

@@ -23,12 +23,10 @@ pub enum SceneError {
         path: PathBuf,
     },
     /// Nothing that this crate reads ends like that.
-    #[error("{}: unknown kind of file; a scene (.ron) or a model ({expected}) is expected", path.display())]
+    #[error("{}: unknown kind of file; a scene (.ron) or a model (.obj, .vox) is expected", path.display())]
     UnknownKind {
         /// The file.
         path: PathBuf,
-        /// The endings that would do here.
-        expected: &'static str,
     },
     /// Zero bytes.
     #[error("{}: is empty", path.display())]

@@ -89,19 +89,14 @@ pub fn load(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
         });
     }
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-    let report = match ending.to_str() {
+    match ending.to_str() {
         Some("ron") => file::load_scene(path, world),
         Some("obj") => import::load_obj_scene(path, world),
         Some("vox") => import::load_vox_scene(path, world),
         _ => Err(SceneError::UnknownKind {
             path: path.to_owned(),
-            expected: ".obj, .vox",
         }),
-    }?;
-    for line in report.dropped.iter().chain(&report.warnings) {
-        tracing::warn!("{line}");
     }
-    Ok(report)
 }
 
 /// Writes the scene of `world` to `path`, at once or not at all. Entities without a [`StableId`] are

@@ -38,7 +38,7 @@ impl Random {
 
     /// A whole number below `end`.
     pub fn below(&mut self, end: u32) -> u32 {
-        (u64::from(self.word()) * u64::from(end) >> 32) as u32
+        ((u64::from(self.word()) * u64::from(end)) >> 32) as u32
     }
 
     /// A point in the cube `[-reach, reach)³`.

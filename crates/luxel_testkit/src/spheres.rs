@@ -37,7 +37,7 @@ pub fn small_and_large(seed: u32) -> Vec<SphereRecord> {
 
 /// O02: 1000 small spheres inside one of radius 10.
 pub fn inside_one(seed: u32) -> Vec<SphereRecord> {
-    let mut all = vec![sphere(Random::new(seed).point(4.0), 10.0, 0)];
+    let mut all = vec![sphere(Random::new(seed).point(2.0), 10.0, 0)];
     all.extend(cloud(seed + 1, 1000, 3.0, [0.01, 0.1]));
     renumber(all)
 }

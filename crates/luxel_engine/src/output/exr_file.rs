@@ -65,12 +65,8 @@ fn encode(
     let channels: SmallVec<_> =
         layers.into_iter().map(|layer| AnyChannel::new(layer.name, samples(layer.values, precision))).collect();
     let size = (film.width as usize, film.height as usize);
-    let layer = exr::prelude::Layer::new(
-        size,
-        attributes(metadata),
-        Encoding::SMALL_LOSSLESS,
-        AnyChannels::sort(channels),
-    );
+    let layer =
+        exr::prelude::Layer::new(size, attributes(metadata), Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
     let mut out = BufWriter::new(file);
     Image::from_layer(layer).write().to_buffered(&mut out)?;
     Ok(out.flush()?)
@@ -122,7 +118,12 @@ mod tests {
         for (i, pixel) in film.pixels.iter_mut().enumerate() {
             add_sample(pixel, [i as f32 * 0.37, 1e5, 0.1]);
         }
-        let hit = |i| Aov { instance: 70_000 + i, depth: 0.1 * i as f32, normal: [0.0, 0.6, 0.8], ..Aov::default() };
+        let hit = |i: u8| Aov {
+            instance: 70_000 + u32::from(i),
+            depth: 0.1 * f32::from(i),
+            normal: [0.0, 0.6, 0.8],
+            ..Aov::default()
+        };
         film.aovs = Some((0..15).map(hit).collect());
         film
     }
@@ -157,7 +158,7 @@ mod tests {
 
     #[test]
     fn lengths_and_ids_stay_exact_beside_half_colours() {
-        let depths: Vec<f32> = (0..15).map(|i| 0.1 * i as f32).collect();
+        let depths: Vec<f32> = (0..15_u8).map(|i| 0.1 * f32::from(i)).collect();
         assert_eq!(round_trip(Precision::Half, "Z"), depths);
         assert_eq!(round_trip(Precision::Half, "id.instance")[14], 70_014.0);
         assert_eq!(round_trip(Precision::Half, "N.Z"), [0.8; 15]);

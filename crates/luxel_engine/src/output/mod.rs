@@ -63,6 +63,13 @@ pub enum OutputError {
     },
 }
 
+impl OutputError {
+    /// True if the path that was given is at fault, rather than the machine or the film.
+    pub fn is_input(&self) -> bool {
+        matches!(self, Self::UnknownFormat { .. } | Self::NotAFile { .. } | Self::NoFolder { .. })
+    }
+}
+
 /// A format of output files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
@@ -94,11 +101,18 @@ mod tests {
     fn the_ending_decides_the_format() {
         assert_eq!(Format::of(Path::new("a/b.png")).unwrap(), Format::Png);
         assert_eq!(Format::of(Path::new("B.EXR")).unwrap(), Format::Exr);
-        for other in ["a.jpg", "png", "a.png/", "a.png.bak", ""] {
-            let format = Format::of(Path::new(other));
-            assert_eq!(format.is_err(), other != "a.png/", "{other}");
+        for other in ["a.jpg", "png", ".png", "a.png.bak", ""] {
+            assert!(Format::of(Path::new(other)).is_err(), "{other}");
         }
         let message = Format::of(Path::new("out.jpg")).unwrap_err().to_string();
         assert_eq!(message, "cannot write out.jpg: its name must end in .png or .exr");
+    }
+
+    #[test]
+    fn a_bad_path_is_told_from_a_machine_that_refuses() {
+        assert!(Format::of(Path::new("a.jpg")).unwrap_err().is_input());
+        assert!(check(Path::new(".")).unwrap_err().is_input());
+        let source = std::io::Error::from(std::io::ErrorKind::StorageFull);
+        assert!(!OutputError::Io { path: PathBuf::from("a.png"), source }.is_input());
     }
 }

@@ -1,0 +1,139 @@
+//! A world, its baker, and the file that it came from.
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use bevy_ecs::prelude::*;
+use luxel_bake::{BakeReport, Baker};
+use luxel_film::{Display, ToneMap};
+use luxel_flat::FlatScene;
+use luxel_scene::{ActiveCamera, Camera, LoadReport, Name, RenderSettings, ToneMapping};
+
+use crate::EngineError;
+
+/// A loaded scene that can be edited, baked and rendered.
+pub struct Engine {
+    /// The scene: edit its components and resources, then [`Engine::bake`].
+    pub world: World,
+    baker: Baker,
+    path: PathBuf,
+    report: LoadReport,
+    load_secs: f64,
+    bake_secs: f64,
+}
+
+impl Engine {
+    /// Loads a scene (`.ron`) or a model (`.obj`, `.vox`).
+    ///
+    /// # Errors
+    /// When the file cannot be read or makes no scene.
+    pub fn load(path: &Path) -> Result<Self, EngineError> {
+        let start = Instant::now();
+        let mut world = luxel_scene::empty_world();
+        let report = luxel_scene::load(path, &mut world)?;
+        let mut engine = Self::over(world, path)?;
+        engine.report = report;
+        engine.load_secs = start.elapsed().as_secs_f64();
+        Ok(engine)
+    }
+
+    /// An engine over a world made by hand. `path` is what messages and metadata call it.
+    ///
+    /// # Errors
+    /// [`EngineError::Bake`] if the world cannot be baked at all.
+    pub fn over(mut world: World, path: &Path) -> Result<Self, EngineError> {
+        let scene = path.display().to_string();
+        let baker = Baker::new(&mut world).map_err(|source| EngineError::Bake { scene, source })?;
+        Ok(Self {
+            world,
+            baker,
+            path: path.to_owned(),
+            report: LoadReport::default(),
+            load_secs: 0.0,
+            bake_secs: 0.0,
+        })
+    }
+
+    /// Takes in what changed in the world; the same snapshot as before if nothing did.
+    ///
+    /// # Errors
+    /// When the scene cannot be shown: no camera, for example.
+    pub fn bake(&mut self) -> Result<Arc<FlatScene>, EngineError> {
+        let start = Instant::now();
+        let baked = self.baker.run(&mut self.world);
+        self.bake_secs += start.elapsed().as_secs_f64();
+        baked.map_err(|source| EngineError::Bake { scene: self.path.display().to_string(), source })
+    }
+
+    /// The file that the scene came from.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What import dropped and warns about.
+    pub fn load_report(&self) -> &LoadReport {
+        &self.report
+    }
+
+    /// Facts about the last baked scene.
+    pub fn bake_report(&self) -> BakeReport {
+        self.baker.report(&self.world)
+    }
+
+    /// Seconds that loading took.
+    pub fn load_secs(&self) -> f64 {
+        self.load_secs
+    }
+
+    /// Seconds that baking took, all runs together.
+    pub fn bake_secs(&self) -> f64 {
+        self.bake_secs
+    }
+
+    /// The settings of the picture.
+    pub fn settings(&self) -> RenderSettings {
+        *self.world.resource::<RenderSettings>()
+    }
+
+    /// Exposure and tone curve that the scene asks for.
+    pub fn display(&self) -> Display {
+        let settings = self.settings();
+        Display { tone_map: tone_map(settings.tone_map), exposure: settings.exposure }
+    }
+
+    /// Looks through the camera of that name.
+    ///
+    /// # Errors
+    /// [`EngineError::NoSuchCamera`], with the names there are.
+    pub fn use_camera(&mut self, name: &str) -> Result<(), EngineError> {
+        let mut cameras = self.world.query_filtered::<(Entity, Option<&Name>), With<Camera>>();
+        let named: Vec<(Entity, String)> = cameras
+            .iter(&self.world)
+            .map(|(entity, name)| (entity, name.map_or_else(String::new, |n| n.0.clone())))
+            .collect();
+        let Some((chosen, _)) = named.iter().find(|(_, n)| n == name) else {
+            let known = named.iter().map(|(_, n)| format!("'{n}'")).collect::<Vec<_>>().join(", ");
+            let known = if known.is_empty() { "none".to_owned() } else { known };
+            return Err(EngineError::NoSuchCamera {
+                scene: self.path.display().to_string(),
+                name: name.to_owned(),
+                known,
+            });
+        };
+        for (entity, _) in &named {
+            self.world.entity_mut(*entity).remove::<ActiveCamera>();
+        }
+        self.world.entity_mut(*chosen).insert(ActiveCamera);
+        Ok(())
+    }
+}
+
+/// The curve that a scene names.
+fn tone_map(tone_mapping: ToneMapping) -> ToneMap {
+    match tone_mapping {
+        ToneMapping::None => ToneMap::None,
+        ToneMapping::Reinhard => ToneMap::Reinhard,
+        ToneMapping::Aces => ToneMap::Aces,
+        ToneMapping::AgX => ToneMap::AgX,
+    }
+}

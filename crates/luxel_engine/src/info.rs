@@ -1,0 +1,75 @@
+//! What a scene holds, costs, and calls for.
+use luxel_bake::BakeReport;
+use luxel_flat::{FEATURES, FeatureSet};
+use serde::Serialize;
+
+use crate::{Engine, EngineError};
+
+/// A feature as `luxel info` shows it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct FeatureFacts {
+    /// Name.
+    pub name: &'static str,
+    /// Whether the scene calls for it.
+    pub used: bool,
+    /// Why, as the end of a sentence that begins with "because".
+    pub because: &'static str,
+}
+
+/// The answer of `luxel info`.
+#[derive(Clone, Debug, Serialize)]
+pub struct SceneInfo {
+    /// The file.
+    pub scene: String,
+    /// Hash of the scene's content.
+    pub scene_hash: String,
+    /// Counts, structures, memory, and what is drawn otherwise than asked.
+    pub baked: BakeReport,
+    /// Every feature.
+    pub features: Vec<FeatureFacts>,
+    /// What import left out, one line each.
+    pub dropped: Vec<String>,
+    /// What import warns about, one line each.
+    pub warnings: Vec<String>,
+    /// Seconds that loading took.
+    pub load_secs: f64,
+    /// Seconds that baking took.
+    pub bake_secs: f64,
+}
+
+/// Every feature with the reason for its presence or absence.
+pub fn features(used: FeatureSet) -> Vec<FeatureFacts> {
+    let facts = FEATURES.iter().map(|row| {
+        let used = used.has(row.feature);
+        FeatureFacts { name: row.name, used, because: if used { row.used } else { row.unused } }
+    });
+    facts.collect()
+}
+
+impl Engine {
+    /// Bakes the scene and describes it.
+    ///
+    /// # Errors
+    /// When the scene cannot be baked.
+    pub fn info(&mut self) -> Result<SceneInfo, EngineError> {
+        let scene = self.bake()?;
+        Ok(SceneInfo {
+            scene: self.path().display().to_string(),
+            scene_hash: self.scene_hash()?,
+            baked: self.bake_report(),
+            features: features(scene.features),
+            dropped: self.load_report().dropped.clone(),
+            warnings: self.load_report().warnings.clone(),
+            load_secs: self.load_secs(),
+            bake_secs: self.bake_secs(),
+        })
+    }
+
+    /// Hash of the scene's content: equal for scenes that look equal and carry equal ids.
+    ///
+    /// # Errors
+    /// When the scene cannot be written out.
+    pub fn scene_hash(&self) -> Result<String, EngineError> {
+        Ok(format!("{:016x}", luxel_scene::world_hash(&self.world)?))
+    }
+}

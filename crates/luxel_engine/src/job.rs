@@ -1,0 +1,86 @@
+//! A render as data: what differs from the scene's own settings, and when to stop.
+use bevy_ecs::prelude::*;
+use luxel_film::StopRule;
+use luxel_flat::FeatureSet;
+use luxel_scene::RenderSettings;
+
+use crate::{BackendChoice, Engine, EngineError};
+
+/// Largest width or height of a picture.
+pub const MAX_SIZE: u32 = 16_384;
+
+/// What is to be rendered. `None` leaves a setting to the scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RenderJob {
+    /// Width and height in pixels.
+    pub size: Option<(u32, u32)>,
+    /// Samples per pixel.
+    pub spp: Option<u32>,
+    /// Seconds of tracing.
+    pub seconds: Option<f64>,
+    /// Relative error of the picture, 0.02 for 2 %.
+    pub error: Option<f64>,
+    /// Seed of the random numbers.
+    pub seed: Option<u32>,
+    /// How often light may scatter after the first hit.
+    pub max_depth: Option<u32>,
+    /// Name of the camera.
+    pub camera: Option<String>,
+    /// First-hit outputs are wanted.
+    pub aovs: bool,
+    /// Features to trace with beyond those that the scene calls for.
+    pub extra_features: FeatureSet,
+    /// Where to trace.
+    pub backend: BackendChoice,
+}
+
+impl RenderJob {
+    /// Writes the job's settings into the engine's world.
+    ///
+    /// # Errors
+    /// [`EngineError::Setting`] for one out of range, [`EngineError::NoSuchCamera`].
+    pub(crate) fn apply(&self, engine: &mut Engine) -> Result<(), EngineError> {
+        self.check()?;
+        if let Some(name) = &self.camera {
+            engine.use_camera(name)?;
+        }
+        let mut settings = engine.settings();
+        (settings.width, settings.height) = self.size.unwrap_or((settings.width, settings.height));
+        settings.spp = self.spp.unwrap_or(settings.spp);
+        settings.seed = self.seed.unwrap_or(settings.seed);
+        settings.max_depth = self.max_depth.unwrap_or(settings.max_depth);
+        engine.world.resource_mut::<RenderSettings>().set_if_neq(settings);
+        Ok(())
+    }
+
+    fn check(&self) -> Result<(), EngineError> {
+        let refuse = |message: String| Err(EngineError::Setting(message));
+        if let Some((width, height)) = self.size
+            && !((1..=MAX_SIZE).contains(&width) && (1..=MAX_SIZE).contains(&height))
+        {
+            return refuse(format!("size {width}x{height}: each side must be 1 to {MAX_SIZE} pixels"));
+        }
+        if self.spp == Some(0) {
+            return refuse("samples per pixel must be at least 1".to_owned());
+        }
+        if self.seconds.is_some_and(|s| !(s > 0.0 && s.is_finite())) {
+            return refuse("the time limit must be a positive number of seconds".to_owned());
+        }
+        if self.error.is_some_and(|e| !(e > 0.0 && e.is_finite())) {
+            return refuse("the error limit must be a positive percentage".to_owned());
+        }
+        Ok(())
+    }
+
+    /// When to stop: the limits given, or the scene's samples if none is.
+    pub(crate) fn stop_rules(&self, settings: &RenderSettings) -> Vec<StopRule> {
+        let mut rules = Vec::new();
+        rules.extend(self.spp.map(StopRule::Samples));
+        rules.extend(self.seconds.map(StopRule::Seconds));
+        rules.extend(self.error.map(StopRule::Error));
+        if rules.is_empty() {
+            rules.push(StopRule::Samples(settings.spp));
+        }
+        rules
+    }
+}

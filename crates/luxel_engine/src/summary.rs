@@ -1,0 +1,149 @@
+//! A render in numbers: what `--json` prints.
+use std::collections::BTreeMap;
+
+use luxel_film::StopRule;
+use serde::Serialize;
+
+use crate::output::Metadata;
+use crate::{Engine, EngineError, Rendered, Stopped};
+
+/// Seconds per stage.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StageSecs {
+    /// Reading the scene and its assets.
+    pub load: f64,
+    /// Building structures.
+    pub bake: f64,
+    /// Making pipelines.
+    pub compile: f64,
+    /// Tracing.
+    pub trace: f64,
+}
+
+/// Time of one kind of pass.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PassSummary {
+    /// Name.
+    pub label: String,
+    /// Milliseconds, all runs together.
+    pub ms: f64,
+    /// Number of runs.
+    pub runs: u64,
+}
+
+/// A render in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct RenderSummary {
+    /// The scene file.
+    pub scene: String,
+    /// Hash of the scene's content.
+    pub scene_hash: String,
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Samples that every pixel has.
+    pub spp: u32,
+    /// Why the render stopped: `samples`, `seconds`, `error` or `interrupted`.
+    pub stopped_by: &'static str,
+    /// Relative error of the picture, estimated from its own samples.
+    pub error: f64,
+    /// Median and 95th percentile of the pixels' errors.
+    pub error_p50: f64,
+    /// See `error_p50`.
+    pub error_p95: f64,
+    /// `cpu` or `gpu`.
+    pub backend: &'static str,
+    /// Processor or adapter.
+    pub device: String,
+    /// Its driver.
+    pub driver: String,
+    /// Why this backend.
+    pub because: String,
+    /// Features in use.
+    pub features: Vec<&'static str>,
+    /// Seconds per stage.
+    pub seconds: StageSecs,
+    /// Times per pass.
+    pub passes: Vec<PassSummary>,
+    /// Rays per second of tracing.
+    pub rays_per_sec: f64,
+    /// Counts by name.
+    pub counters: BTreeMap<&'static str, u64>,
+    /// What import dropped, what is drawn otherwise than asked, what went wrong and was got over.
+    pub notices: Vec<String>,
+}
+
+impl Rendered {
+    /// The numbers of this render of an engine's scene.
+    ///
+    /// # Errors
+    /// When the scene cannot be hashed.
+    pub fn summary(&self, engine: &Engine) -> Result<RenderSummary, EngineError> {
+        let rays = self.stats.counters.rays() as f64;
+        Ok(RenderSummary {
+            scene: engine.path().display().to_string(),
+            scene_hash: engine.scene_hash()?,
+            width: self.film.width,
+            height: self.film.height,
+            spp: self.samples,
+            stopped_by: self.stopped_by(),
+            error: self.error.relative,
+            error_p50: self.error.p50,
+            error_p95: self.error.p95,
+            backend: self.facts.backend.name(),
+            device: self.facts.device.clone(),
+            driver: self.facts.driver.clone(),
+            because: self.because.clone(),
+            features: self.scene.features.rows().map(|row| row.name).collect(),
+            seconds: StageSecs {
+                load: engine.load_secs(),
+                bake: engine.bake_secs(),
+                compile: self.stats.compile_secs,
+                trace: self.trace_secs,
+            },
+            passes: self.passes(),
+            rays_per_sec: if self.trace_secs > 0.0 { rays / self.trace_secs } else { 0.0 },
+            counters: self.stats.counters.iter().collect(),
+            notices: self.all_notices(engine),
+        })
+    }
+
+    /// What is written into output files.
+    ///
+    /// # Errors
+    /// When the scene cannot be hashed.
+    pub fn metadata(&self, engine: &Engine) -> Result<Metadata, EngineError> {
+        Ok(Metadata {
+            scene: engine.path().display().to_string(),
+            scene_hash: engine.scene_hash()?,
+            samples: self.samples,
+            backend: self.facts.backend,
+            device: self.facts.device.clone(),
+            seconds: self.trace_secs,
+            features: self.scene.features.rows().map(|row| row.name.to_owned()).collect(),
+            settings: format!("{:?}", engine.settings()),
+        })
+    }
+
+    fn stopped_by(&self) -> &'static str {
+        match self.stopped {
+            Stopped::Rule(StopRule::Samples(_)) => "samples",
+            Stopped::Rule(StopRule::Seconds(_)) => "seconds",
+            Stopped::Rule(StopRule::Error(_)) => "error",
+            Stopped::Interrupted => "interrupted",
+        }
+    }
+
+    fn passes(&self) -> Vec<PassSummary> {
+        let passes = self.stats.passes.iter();
+        passes.map(|p| PassSummary { label: p.label.clone(), ms: p.secs * 1e3, runs: p.runs }).collect()
+    }
+
+    fn all_notices(&self, engine: &Engine) -> Vec<String> {
+        let load = engine.load_report();
+        let baked = engine.bake_report().warnings;
+        let all = load.dropped.iter().chain(&load.warnings).chain(&baked).chain(&self.notices);
+        all.cloned().collect()
+    }
+}
