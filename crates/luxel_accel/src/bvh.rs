@@ -40,10 +40,7 @@ pub struct BvhOptions {
 
 impl Default for BvhOptions {
     fn default() -> Self {
-        Self {
-            max_leaf_size: MAX_LEAF_SIZE,
-            traversal_cost: 1.0,
-        }
+        Self { max_leaf_size: MAX_LEAF_SIZE, traversal_cost: 1.0 }
     }
 }
 
@@ -67,10 +64,7 @@ pub fn build_bvh(boxes: &[Aabb<f32>], options: &BvhOptions) -> Result<Bvh, Accel
         return Err(AccelError::TooManyPrimitives { count: boxes.len() });
     }
     let (tree, order) = build::build(boxes, options);
-    Ok(Bvh {
-        nodes: emit::depth_first(tree.as_ref()),
-        order,
-    })
+    Ok(Bvh { nodes: emit::depth_first(tree.as_ref()), order })
 }
 
 impl Bvh {
@@ -81,15 +75,8 @@ impl Bvh {
     pub fn validate(&self, boxes: &[Aabb<f32>]) -> Result<(), AccelError> {
         let mut seen = vec![false; boxes.len()];
         for (position, &index) in self.order.iter().enumerate() {
-            let fresh = seen
-                .get_mut(index as usize)
-                .is_some_and(|s| !std::mem::replace(s, true));
-            AccelError::require(
-                fresh,
-                "bvh",
-                position,
-                "`order` is not a permutation of the primitives",
-            )?;
+            let fresh = seen.get_mut(index as usize).is_some_and(|s| !std::mem::replace(s, true));
+            AccelError::require(fresh, "bvh", position, "`order` is not a permutation of the primitives")?;
         }
         let box_of = |leaf_index: u32| Some(boxes[*self.order.get(leaf_index as usize)? as usize]);
         validate_tree(&self.nodes, boxes.len(), box_of)

@@ -20,10 +20,7 @@ pub enum AccelError {
         vertex_count: usize,
     },
     /// A vertex is NaN or infinite, or so far out that boxes overflow.
-    #[error(
-        "triangle {triangle} has a vertex that is not a finite number below {:e}",
-        luxel_flat::FAR
-    )]
+    #[error("triangle {triangle} has a vertex that is not a finite number below {:e}", luxel_flat::FAR)]
     BadTriangle {
         /// Position of the triangle in the input.
         triangle: usize,
@@ -42,7 +39,7 @@ pub enum AccelError {
         /// The slot.
         slot: u32,
     },
-    /// A sphere must have a finite centre, a positive radius and a box within ±`FAR`.
+    /// A sphere must have a finite centre, a positive normal radius and a box within ±`FAR`.
     #[error(
         "sphere in slot {slot}: the radius must be positive, centre and radius finite and below {:e}",
         luxel_flat::FAR
@@ -105,14 +102,6 @@ impl AccelError {
         index: usize,
         rule: &'static str,
     ) -> Result<(), AccelError> {
-        if holds {
-            Ok(())
-        } else {
-            Err(AccelError::Broken {
-                structure,
-                index: index as u32,
-                rule,
-            })
-        }
+        if holds { Ok(()) } else { Err(AccelError::Broken { structure, index: index as u32, rule }) }
     }
 }

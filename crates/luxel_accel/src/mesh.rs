@@ -30,10 +30,7 @@ pub fn build_mesh(
     options: &BvhOptions,
 ) -> Result<MeshBvh, AccelError> {
     if triangles.len() != ids.len() {
-        return Err(AccelError::IdCount {
-            triangles: triangles.len(),
-            ids: ids.len(),
-        });
+        return Err(AccelError::IdCount { triangles: triangles.len(), ids: ids.len() });
     }
     let records = (triangles.par_iter().zip(ids).enumerate())
         .map(|(triangle, (indices, &id))| record(positions, triangle, *indices, id))
@@ -41,15 +38,8 @@ pub fn build_mesh(
     let boxes: Vec<Aabb<f32>> = records.par_iter().map(bounds).collect();
     let bvh = build_bvh(&boxes, options)?;
     Ok(MeshBvh {
-        bounds: bvh.nodes.first().map_or_else(Aabb::empty, |n| Aabb {
-            lo: n.lo.into(),
-            hi: n.hi.into(),
-        }),
-        triangles: bvh
-            .order
-            .par_iter()
-            .map(|&index| records[index as usize])
-            .collect(),
+        bounds: bvh.nodes.first().map_or_else(Aabb::empty, |n| Aabb { lo: n.lo.into(), hi: n.hi.into() }),
+        triangles: bvh.order.par_iter().map(|&index| records[index as usize]).collect(),
         nodes: bvh.nodes,
     })
 }
@@ -70,33 +60,13 @@ fn bounds(triangle: &Triangle) -> Aabb<f32> {
     triangle::bounds::<f32>(&triangle.vertices().map(Vec3::from))
 }
 
-fn record(
-    positions: &[Vec3],
-    triangle: usize,
-    indices: [u32; 3],
-    id: u32,
-) -> Result<Triangle, AccelError> {
+fn record(positions: &[Vec3], triangle: usize, indices: [u32; 3], id: u32) -> Result<Triangle, AccelError> {
     let vertex = |corner: usize| {
         let vertex = indices[corner];
-        let out_of_range = AccelError::VertexOutOfRange {
-            triangle,
-            vertex,
-            vertex_count: positions.len(),
-        };
+        let out_of_range = AccelError::VertexOutOfRange { triangle, vertex, vertex_count: positions.len() };
         let position = *positions.get(vertex as usize).ok_or(out_of_range)?;
         let is_good = position.is_finite() && position.abs().max_element() < FAR;
-        if is_good {
-            Ok(position.to_array())
-        } else {
-            Err(AccelError::BadTriangle { triangle })
-        }
+        if is_good { Ok(position.to_array()) } else { Err(AccelError::BadTriangle { triangle }) }
     };
-    Ok(Triangle {
-        v0: vertex(0)?,
-        id,
-        v1: vertex(1)?,
-        material: 0,
-        v2: vertex(2)?,
-        reserved: 0,
-    })
+    Ok(Triangle { v0: vertex(0)?, id, v1: vertex(1)?, material: 0, v2: vertex(2)?, reserved: 0 })
 }

@@ -84,11 +84,7 @@ impl SphereOctree {
     ///
     /// # Errors
     /// [`AccelError::BadSphere`], [`AccelError::SlotTaken`] if two records name one slot.
-    pub fn build(
-        root: RootCell,
-        spheres: &[(u32, SphereRecord)],
-        revision: u64,
-    ) -> Result<Self, AccelError> {
+    pub fn build(root: RootCell, spheres: &[(u32, SphereRecord)], revision: u64) -> Result<Self, AccelError> {
         let mut octree = Self::new(root);
         for &(slot, record) in spheres {
             octree.check_free(slot)?;
@@ -145,20 +141,12 @@ impl SphereOctree {
 
     /// The sphere in a slot.
     fn occupied(&self, slot: u32) -> Result<SphereRecord, AccelError> {
-        let record = self
-            .spheres
-            .as_slice()
-            .get(slot as usize)
-            .filter(|s| s.radius > 0.0);
+        let record = self.spheres.as_slice().get(slot as usize).filter(|s| s.radius > 0.0);
         record.copied().ok_or(AccelError::SlotEmpty { slot })
     }
 
     fn check_free(&self, slot: u32) -> Result<(), AccelError> {
-        if self.occupied(slot).is_ok() {
-            Err(AccelError::SlotTaken { slot })
-        } else {
-            Ok(())
-        }
+        if self.occupied(slot).is_ok() { Err(AccelError::SlotTaken { slot }) } else { Ok(()) }
     }
 }
 
@@ -178,34 +166,23 @@ fn empty_node(parent: u32) -> OctreeNode {
 }
 
 /// The record of a slot without a sphere.
-const FREE_SPHERE: SphereRecord = SphereRecord {
-    center: [0.0; 3],
-    radius: 0.0,
-    material: 0,
-    stable_id: 0,
-    next: NONE,
-    node: NONE,
-};
+const FREE_SPHERE: SphereRecord =
+    SphereRecord { center: [0.0; 3], radius: 0.0, material: 0, stable_id: 0, next: NONE, node: NONE };
 
 fn node_bounds(node: &OctreeNode) -> Aabb<f32> {
-    Aabb {
-        lo: node.lo.into(),
-        hi: node.hi.into(),
-    }
+    Aabb { lo: node.lo.into(), hi: node.hi.into() }
 }
 
 fn sphere_bounds(record: &SphereRecord) -> Aabb<f32> {
     sphere::bounds(Vec3::from(record.center), record.radius)
 }
 
-/// Refuses spheres whose box would not be finite or not hold them.
+/// Refuses spheres whose box would not be finite or not hold them. A subnormal radius counts as none: a GPU may
+/// flush it to zero.
 fn check_sphere(slot: u32, center: Vec3, radius: f32) -> Result<(), AccelError> {
     let limit = Vec3::splat(FAR);
     let bounds = sphere::bounds::<f32>(center, radius);
-    let is_good = radius > 0.0 && bounds.lo.cmpgt(-limit).all() && bounds.hi.cmplt(limit).all();
-    if is_good {
-        Ok(())
-    } else {
-        Err(AccelError::BadSphere { slot })
-    }
+    let is_good =
+        radius >= f32::MIN_POSITIVE && bounds.lo.cmpgt(-limit).all() && bounds.hi.cmplt(limit).all();
+    if is_good { Ok(()) } else { Err(AccelError::BadSphere { slot }) }
 }

@@ -51,23 +51,13 @@ pub struct Svo {
 pub fn build_svo(voxels: &[SvoVoxel], size: UVec3) -> Result<Svo, AccelError> {
     let levels = levels_for(size)?;
     if voxels.len() > morton::MAX_VOXELS {
-        return Err(AccelError::TooManyVoxels {
-            count: voxels.len(),
-        });
+        return Err(AccelError::TooManyVoxels { count: voxels.len() });
     }
     let is_outside = |v: &SvoVoxel| UVec3::from(v.cell.map(u32::from)).cmpge(size).any();
     if let Some(voxel) = voxels.iter().position(is_outside) {
-        return Err(AccelError::VoxelOutside {
-            voxel,
-            cell: voxels[voxel].cell,
-            size: size.into(),
-        });
+        return Err(AccelError::VoxelOutside { voxel, cell: voxels[voxel].cell, size: size.into() });
     }
-    Ok(Svo {
-        nodes: build::nodes(voxels, levels),
-        levels,
-        bounds: bounds(voxels),
-    })
+    Ok(Svo { nodes: build::nodes(voxels, levels), levels, bounds: bounds(voxels) })
 }
 
 impl Svo {
@@ -91,19 +81,11 @@ fn levels_for(size: UVec3) -> Result<u32, AccelError> {
 
 /// The box of some cells given by their lowest corners' extremes, as it is stored.
 fn cell_bounds(lowest: Vec3, highest: Vec3) -> Aabb<f32> {
-    Aabb {
-        lo: lowest,
-        hi: highest + Vec3::ONE,
-    }
-    .outset()
+    Aabb { lo: lowest, hi: highest + Vec3::ONE }.outset()
 }
 
 fn bounds(voxels: &[SvoVoxel]) -> Aabb<f32> {
     let corners = voxels.iter().map(|v| Vec3::from(v.cell.map(f32::from)));
-    let extremes = corners
-        .map(|c| (c, c))
-        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-    extremes.map_or_else(Aabb::empty, |(lowest, highest)| {
-        cell_bounds(lowest, highest)
-    })
+    let extremes = corners.map(|c| (c, c)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    extremes.map_or_else(Aabb::empty, |(lowest, highest)| cell_bounds(lowest, highest))
 }

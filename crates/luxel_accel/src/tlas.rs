@@ -13,20 +13,11 @@ use crate::{AccelError, BvhOptions, build_bvh};
 /// # Errors
 /// [`AccelError::SlotTooLarge`].
 pub fn build_tlas(instances: &[(u32, Aabb<f32>)]) -> Result<Vec<BvhNode>, AccelError> {
-    if let Some(&(slot, _)) = instances
-        .iter()
-        .find(|(slot, _)| slot >> LEAF_COUNT_SHIFT != 0)
-    {
+    if let Some(&(slot, _)) = instances.iter().find(|(slot, _)| slot >> LEAF_COUNT_SHIFT != 0) {
         return Err(AccelError::SlotTooLarge { slot });
     }
     let boxes: Vec<Aabb<f32>> = instances.iter().map(|(_, bounds)| *bounds).collect();
-    let mut bvh = build_bvh(
-        &boxes,
-        &BvhOptions {
-            max_leaf_size: 1,
-            ..BvhOptions::default()
-        },
-    )?;
+    let mut bvh = build_bvh(&boxes, &BvhOptions { max_leaf_size: 1, ..BvhOptions::default() })?;
     for node in bvh.nodes.iter_mut().filter(|node| node.is_leaf()) {
         let (first, _) = node.primitives();
         let (slot, _) = instances[bvh.order[first as usize] as usize];

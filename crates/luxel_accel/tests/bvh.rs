@@ -4,8 +4,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use luxel_accel::{
-    AccelError, Bvh, BvhOptions, MAX_BVH_DEPTH, build_bvh, build_mesh, build_tlas, depth,
-    validate_tlas,
+    AccelError, Bvh, BvhOptions, MAX_BVH_DEPTH, build_bvh, build_mesh, build_tlas, depth, validate_tlas,
 };
 use luxel_flat::MAX_LEAF_SIZE;
 use luxel_geom::{Aabb, sphere};
@@ -20,18 +19,9 @@ fn checked(boxes: &[Aabb<f32>]) -> Bvh {
 }
 
 fn checked_mesh(mesh: &TestMesh) {
-    let built = build_mesh(
-        &mesh.positions,
-        &mesh.triangles,
-        &mesh.ids(),
-        &BvhOptions::default(),
-    )
-    .unwrap();
+    let built = build_mesh(&mesh.positions, &mesh.triangles, &mesh.ids(), &BvhOptions::default()).unwrap();
     built.validate().unwrap();
-    let union = mesh
-        .boxes()
-        .into_iter()
-        .fold(Aabb::empty(), |a, b| a.union(&b));
+    let union = mesh.boxes().into_iter().fold(Aabb::empty(), |a, b| a.union(&b));
     assert_eq!(built.bounds, union);
     let mut ids: Vec<u32> = built.triangles.iter().map(|t| t.id).collect();
     ids.sort_unstable();
@@ -39,11 +29,7 @@ fn checked_mesh(mesh: &TestMesh) {
 }
 
 fn cube(center: Vec3, half: f32) -> Aabb<f32> {
-    Aabb {
-        lo: center - half,
-        hi: center + half,
-    }
-    .outset()
+    Aabb { lo: center - half, hi: center + half }.outset()
 }
 
 #[test]
@@ -52,18 +38,10 @@ fn b01_few_primitives() {
         checked_mesh(&meshes::soup(count as u32, count, 0.2));
         for max_leaf_size in [0, 1, 2, 8, 100] {
             let boxes = meshes::soup(7, count, 0.2).boxes();
-            let options = BvhOptions {
-                max_leaf_size,
-                ..Default::default()
-            };
+            let options = BvhOptions { max_leaf_size, ..Default::default() };
             let bvh = build_bvh(&boxes, &options).unwrap();
             bvh.validate(&boxes).unwrap();
-            let largest = bvh
-                .nodes
-                .iter()
-                .map(|n| n.primitives().1)
-                .max()
-                .unwrap_or(0);
+            let largest = bvh.nodes.iter().map(|n| n.primitives().1).max().unwrap_or(0);
             assert!(largest <= max_leaf_size.clamp(1, MAX_LEAF_SIZE));
         }
     }
@@ -82,10 +60,7 @@ fn b02_identical_triangles() {
 #[test]
 fn b03_nested_spheres() {
     let all = spheres::nested(10_000, 1.0);
-    let boxes: Vec<Aabb<f32>> = all
-        .iter()
-        .map(|s| sphere::bounds(s.center.into(), s.radius))
-        .collect();
+    let boxes: Vec<Aabb<f32>> = all.iter().map(|s| sphere::bounds(s.center.into(), s.radius)).collect();
     assert!(depth(&checked(&boxes).nodes) <= 11);
 }
 
@@ -93,9 +68,7 @@ fn b03_nested_spheres() {
 fn b04_centres_within_two_ulps() {
     let mut random = Random::new(4);
     let mut center = || [0, 1, 2].map(|_| f32::from_bits(1f32.to_bits() + random.below(3)));
-    let boxes: Vec<_> = (0..10_000)
-        .map(|_| cube(Vec3::from(center()), 0.25))
-        .collect();
+    let boxes: Vec<_> = (0..10_000).map(|_| cube(Vec3::from(center()), 0.25)).collect();
     assert!(depth(&checked(&boxes).nodes) <= 20);
 }
 
@@ -120,15 +93,10 @@ fn b06_geometric_progressions() {
 #[test]
 fn b07_one_box_at_1e38() {
     let mut random = Random::new(7);
-    let mut boxes: Vec<_> = (0..999)
-        .map(|_| cube(random.point(500.0) + 500.0, 1.0))
-        .collect();
+    let mut boxes: Vec<_> = (0..999).map(|_| cube(random.point(500.0) + 500.0, 1.0)).collect();
     boxes.push(cube(Vec3::splat(1e38), 1e37));
     assert!(depth(&checked(&boxes).nodes) <= 20);
-    boxes.push(Aabb {
-        lo: Vec3::splat(-f32::MAX),
-        hi: Vec3::splat(f32::MAX),
-    });
+    boxes.push(Aabb { lo: Vec3::splat(-f32::MAX), hi: Vec3::splat(f32::MAX) });
     assert!(depth(&checked(&boxes).nodes) <= 20);
 }
 
@@ -163,10 +131,7 @@ fn a_closed_mesh_is_shallow() {
 fn the_tree_does_not_depend_on_the_number_of_threads() {
     let boxes = meshes::bumpy_sphere(150, 300).boxes();
     let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| build_bvh(&boxes, &BvhOptions::default()).unwrap())
     };
     let one = with(1);
@@ -179,9 +144,7 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
 fn a_tlas_holds_slots() {
     let mut random = Random::new(11);
     let slots = (0..500u32).map(|i| 1000 - 2 * i);
-    let instances: Vec<_> = slots
-        .map(|slot| (slot, cube(random.point(10.0), random.uniform())))
-        .collect();
+    let instances: Vec<_> = slots.map(|slot| (slot, cube(random.point(10.0), random.uniform()))).collect();
     for count in [0, 1, 2, 3, 500] {
         let nodes = build_tlas(&instances[..count]).unwrap();
         validate_tlas(&nodes, &instances[..count]).unwrap();
@@ -192,31 +155,18 @@ fn a_tlas_holds_slots() {
     damaged[leaf].leaf += 1;
     assert!(validate_tlas(&damaged, &instances).is_err());
     let too_large = [(1 << 28, cube(Vec3::ZERO, 1.0))];
-    assert_eq!(
-        build_tlas(&too_large),
-        Err(AccelError::SlotTooLarge { slot: 1 << 28 })
-    );
+    assert_eq!(build_tlas(&too_large), Err(AccelError::SlotTooLarge { slot: 1 << 28 }));
 }
 
 #[test]
 fn bad_meshes_are_refused() {
     let build = |positions: &[Vec3], triangles: &[[u32; 3]], ids: &[u32]| {
-        build_mesh(positions, triangles, ids, &BvhOptions::default())
-            .unwrap_err()
-            .to_string()
+        build_mesh(positions, triangles, ids, &BvhOptions::default()).unwrap_err().to_string()
     };
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NAN];
-    assert_eq!(
-        build(&positions, &[[0, 1, 9]], &[0]),
-        "triangle 0 uses vertex 9, but there are 4 vertices"
-    );
-    assert!(
-        build(&positions, &[[0, 1, 2], [0, 1, 3]], &[0, 1]).starts_with("triangle 1 has a vertex")
-    );
-    assert_eq!(
-        build(&positions, &[[0, 1, 2]], &[]),
-        "1 triangles, but 0 triangle ids"
-    );
+    assert_eq!(build(&positions, &[[0, 1, 9]], &[0]), "triangle 0 uses vertex 9, but there are 4 vertices");
+    assert!(build(&positions, &[[0, 1, 2], [0, 1, 3]], &[0, 1]).starts_with("triangle 1 has a vertex"));
+    assert_eq!(build(&positions, &[[0, 1, 2]], &[]), "1 triangles, but 0 triangle ids");
 }
 
 proptest! {

@@ -9,10 +9,7 @@ use luxel_geom::{Aabb, sphere};
 use luxel_testkit::{Random, spheres};
 use proptest::prelude::*;
 
-const UNIT: RootCell = RootCell {
-    center: Vec3::ZERO,
-    half_extent: 1.0,
-};
+const UNIT: RootCell = RootCell { center: Vec3::ZERO, half_extent: 1.0 };
 
 fn in_slots(spheres: &[SphereRecord]) -> Vec<(u32, SphereRecord)> {
     (0..).zip(spheres.iter().copied()).collect()
@@ -36,29 +33,16 @@ fn insert_all(root: RootCell, spheres: &[SphereRecord]) -> SphereOctree {
 
 fn union<'a>(spheres: impl IntoIterator<Item = &'a SphereRecord>) -> Aabb<f32> {
     let bounds = |s: &SphereRecord| sphere::bounds(s.center.into(), s.radius);
-    spheres
-        .into_iter()
-        .map(bounds)
-        .fold(Aabb::empty(), |a, b| a.union(&b))
+    spheres.into_iter().map(bounds).fold(Aabb::empty(), |a, b| a.union(&b))
 }
 
 fn depth(octree: &SphereOctree) -> usize {
     let nodes = octree.nodes().as_slice();
     let level = |node: u32| {
-        std::iter::successors(Some(node), |&n| {
-            Some(nodes[n as usize].parent).filter(|&p| p != NONE)
-        })
-        .count()
+        std::iter::successors(Some(node), |&n| Some(nodes[n as usize].parent).filter(|&p| p != NONE)).count()
             - 1
     };
-    octree
-        .spheres()
-        .as_slice()
-        .iter()
-        .filter(|s| s.radius > 0.0)
-        .map(|s| level(s.node))
-        .max()
-        .unwrap_or(0)
+    octree.spheres().as_slice().iter().filter(|s| s.radius > 0.0).map(|s| level(s.node)).max().unwrap_or(0)
 }
 
 /// What was done between two readings.
@@ -85,39 +69,22 @@ fn few_spheres_stay_at_the_root() {
         let octree = build(UNIT, &spheres::cloud(1, count, 0.9, [0.01, 0.02]));
         assert_eq!((octree.nodes().len(), octree.len()), (1, count));
     }
-    assert!(
-        build(UNIT, &spheres::cloud(1, 9, 0.9, [0.01, 0.02]))
-            .nodes()
-            .len()
-            > 1
-    );
+    assert!(build(UNIT, &spheres::cloud(1, 9, 0.9, [0.01, 0.02])).nodes().len() > 1);
 }
 
 #[test]
 fn o01_o02_small_beside_large() {
     build(UNIT, &spheres::small_and_large(1));
-    build(
-        RootCell {
-            center: Vec3::ZERO,
-            half_extent: 16.0,
-        },
-        &spheres::inside_one(2),
-    );
+    build(RootCell { center: Vec3::ZERO, half_extent: 16.0 }, &spheres::inside_one(2));
 }
 
 #[test]
 fn o03_many_spheres_at_one_point() {
     let distinct = spheres::nested(10_000, 1.0 / 16_384.0);
-    let identical: Vec<_> = (0..10_000)
-        .map(|id| spheres::sphere(Vec3::ZERO, 1.0 / 1024.0, id))
-        .collect();
+    let identical: Vec<_> = (0..10_000).map(|id| spheres::sphere(Vec3::ZERO, 1.0 / 1024.0, id)).collect();
     for all in [distinct, identical] {
         for octree in [build(UNIT, &all), insert_all(UNIT, &all)] {
-            assert!(
-                octree.nodes().len() <= 2 * all.len(),
-                "{}",
-                octree.nodes().len()
-            );
+            assert!(octree.nodes().len() <= 2 * all.len(), "{}", octree.nodes().len());
             assert!(depth(&octree) <= 14, "{}", depth(&octree));
         }
     }
@@ -125,9 +92,7 @@ fn o03_many_spheres_at_one_point() {
 
 #[test]
 fn o03_the_depth_is_capped() {
-    let specks: Vec<_> = (0..100)
-        .map(|id| spheres::sphere(Vec3::splat(0.3), 1e-30, id))
-        .collect();
+    let specks: Vec<_> = (0..100).map(|id| spheres::sphere(Vec3::splat(0.3), 1e-30, id)).collect();
     let octree = build(UNIT, &specks);
     assert_eq!(depth(&octree), 20);
     assert_eq!(octree.nodes().len(), 1 + 8 * 20);
@@ -145,11 +110,7 @@ fn o04_centres_on_dividing_planes() {
 fn o08_a_sphere_crosses_a_plane_back_and_forth() {
     let mut octree = build(UNIT, &spheres::cloud(8, 100, 0.9, [0.01, 0.1]));
     for i in 0..1000u64 {
-        let x = if i % 2 == 0 {
-            (-0.5f32).next_up()
-        } else {
-            (-0.5f32).next_down()
-        };
+        let x = if i % 2 == 0 { (-0.5f32).next_up() } else { (-0.5f32).next_down() };
         octree.update(7, Vec3::new(x, -0.5, -0.5), 0.05, i).unwrap();
     }
     octree.validate().unwrap();
@@ -166,64 +127,34 @@ fn spheres_outside_the_root_cell_stay_at_the_root() {
 #[test]
 fn bad_edits_change_nothing() {
     let mut octree = build(UNIT, &spheres::cloud(3, 50, 0.9, [0.01, 0.02]));
-    let before = (
-        octree.nodes().as_slice().to_vec(),
-        octree.spheres().as_slice().to_vec(),
-    );
-    let bad = |center: Vec3, radius| SphereRecord {
-        center: center.into(),
-        radius,
-        ..Default::default()
-    };
+    let before = (octree.nodes().as_slice().to_vec(), octree.spheres().as_slice().to_vec());
+    let bad = |center: Vec3, radius| SphereRecord { center: center.into(), radius, ..Default::default() };
     for (center, radius) in [
         (Vec3::ZERO, 0.0),
         (Vec3::ZERO, -1.0),
+        (Vec3::ZERO, f32::MIN_POSITIVE / 2.0),
         (Vec3::ZERO, f32::NAN),
         (Vec3::ZERO, f32::INFINITY),
         (Vec3::NAN, 1.0),
         (Vec3::new(0.0, f32::NEG_INFINITY, 0.0), 1.0),
         (Vec3::splat(1e31), 1.0),
     ] {
-        assert_eq!(
-            octree.insert(60, bad(center, radius), 2),
-            Err(AccelError::BadSphere { slot: 60 })
-        );
-        assert_eq!(
-            octree.update(3, center, radius, 2),
-            Err(AccelError::BadSphere { slot: 3 })
-        );
+        assert_eq!(octree.insert(60, bad(center, radius), 2), Err(AccelError::BadSphere { slot: 60 }));
+        assert_eq!(octree.update(3, center, radius, 2), Err(AccelError::BadSphere { slot: 3 }));
     }
-    assert_eq!(
-        octree.insert(3, bad(Vec3::ZERO, 1.0), 2),
-        Err(AccelError::SlotTaken { slot: 3 })
-    );
-    assert_eq!(
-        octree.remove(50, 2),
-        Err(AccelError::SlotEmpty { slot: 50 })
-    );
-    assert_eq!(
-        octree.update(90, Vec3::ZERO, 1.0, 2),
-        Err(AccelError::SlotEmpty { slot: 90 })
-    );
-    assert_eq!(
-        octree.set_material(90, 1, 2),
-        Err(AccelError::SlotEmpty { slot: 90 })
-    );
+    assert_eq!(octree.insert(3, bad(Vec3::ZERO, 1.0), 2), Err(AccelError::SlotTaken { slot: 3 }));
+    assert_eq!(octree.remove(50, 2), Err(AccelError::SlotEmpty { slot: 50 }));
+    assert_eq!(octree.update(90, Vec3::ZERO, 1.0, 2), Err(AccelError::SlotEmpty { slot: 90 }));
+    assert_eq!(octree.set_material(90, 1, 2), Err(AccelError::SlotEmpty { slot: 90 }));
     assert_eq!(before.0, octree.nodes().as_slice());
     assert_eq!(before.1, octree.spheres().as_slice());
     let twice = [(1, bad(Vec3::ZERO, 1.0)), (1, bad(Vec3::ZERO, 1.0))];
-    assert_eq!(
-        SphereOctree::build(UNIT, &twice, 1).unwrap_err(),
-        AccelError::SlotTaken { slot: 1 }
-    );
+    assert_eq!(SphereOctree::build(UNIT, &twice, 1).unwrap_err(), AccelError::SlotTaken { slot: 1 });
 }
 
 #[test]
 fn moving_one_of_10000_touches_the_way_to_the_root() {
-    let root = RootCell {
-        center: Vec3::ZERO,
-        half_extent: 64.0,
-    };
+    let root = RootCell { center: Vec3::ZERO, half_extent: 64.0 };
     let mut all = spheres::cloud(5, 10_000, 50.0, [0.1, 0.3]);
     all[0] = spheres::sphere(Vec3::new(0.0, -60.0, 0.0), 40.0, 0);
     let mut octree = build(root, &all);
@@ -234,9 +165,7 @@ fn moving_one_of_10000_touches_the_way_to_the_root() {
     for revision in 2..1002 {
         let slot = 1 + random.below(9_999);
         let before = octree.work();
-        octree
-            .update(slot, random.point(50.0), 0.2, revision)
-            .unwrap();
+        octree.update(slot, random.point(50.0), 0.2, revision).unwrap();
         let work = difference(before, octree.work());
         most_nodes = most_nodes.max(work.nodes_touched);
         most_spheres = most_spheres.max(work.spheres_touched);
@@ -262,9 +191,7 @@ fn a_material_change_touches_one_record() {
 fn an_equal_update_writes_nothing() {
     let mut octree = build(UNIT, &spheres::cloud(5, 200, 0.9, [0.01, 0.02]));
     let record = octree.spheres().as_slice()[9];
-    octree
-        .update(9, record.center.into(), record.radius, 2)
-        .unwrap();
+    octree.update(9, record.center.into(), record.radius, 2).unwrap();
     assert!(octree.spheres().newer_than(1).is_empty() && octree.nodes().newer_than(1).is_empty());
 }
 
@@ -309,9 +236,7 @@ fn ten_thousand_edits_equal_a_fresh_build() {
             }
             (true, _) => {
                 octree.update(slot, center, radius, edit).unwrap();
-                model
-                    .entry(slot)
-                    .and_modify(|s| (s.center, s.radius) = (center.into(), radius));
+                model.entry(slot).and_modify(|s| (s.center, s.radius) = (center.into(), radius));
             }
         }
         if edit % 500 == 499 {
@@ -319,34 +244,15 @@ fn ten_thousand_edits_equal_a_fresh_build() {
             assert_eq!(octree.bounds(), union(model.values()));
         }
     }
-    let fresh: Vec<(u32, SphereRecord)> = model
-        .iter()
-        .map(|(&slot, &record)| (slot, record))
-        .collect();
+    let fresh: Vec<(u32, SphereRecord)> = model.iter().map(|(&slot, &record)| (slot, record)).collect();
     let fresh = SphereOctree::build(UNIT, &fresh, 1).unwrap();
-    assert_eq!(
-        (octree.bounds(), octree.len()),
-        (fresh.bounds(), fresh.len())
-    );
+    assert_eq!((octree.bounds(), octree.len()), (fresh.bounds(), fresh.len()));
     let content = |o: &SphereOctree| -> Vec<SphereRecord> {
-        let links_aside = |s: &SphereRecord| SphereRecord {
-            next: 0,
-            node: 0,
-            ..*s
-        };
-        o.spheres()
-            .as_slice()
-            .iter()
-            .map(links_aside)
-            .filter(|s| s.radius > 0.0)
-            .collect()
+        let links_aside = |s: &SphereRecord| SphereRecord { next: 0, node: 0, ..*s };
+        o.spheres().as_slice().iter().map(links_aside).filter(|s| s.radius > 0.0).collect()
     };
     assert_eq!(content(&octree), content(&fresh));
-    assert!(
-        octree.nodes().len() <= 3 * fresh.nodes().len(),
-        "{}",
-        octree.nodes().len()
-    );
+    assert!(octree.nodes().len() <= 3 * fresh.nodes().len(), "{}", octree.nodes().len());
 }
 
 #[derive(Clone, Debug)]

@@ -19,11 +19,7 @@ fn build(voxels: &[SvoVoxel], size: UVec3) -> Svo {
 /// The solid cells of an octree, by a walk of its own.
 fn cells(svo: &Svo) -> Cells {
     let mut cells = Cells::new();
-    let mut open = if svo.nodes.is_empty() {
-        vec![]
-    } else {
-        vec![(0, [0u16; 3])]
-    };
+    let mut open = if svo.nodes.is_empty() { vec![] } else { vec![(0, [0u16; 3])] };
     while let Some((index, cell)) = open.pop() {
         let node = svo.nodes[index];
         if node.child_mask == 0 {
@@ -33,10 +29,7 @@ fn cells(svo: &Svo) -> Cells {
         let octants = (0..8u16).filter(|o| node.child_mask >> o & 1 == 1);
         for (child, octant) in (node.first_child as usize..).zip(octants) {
             let half = |axis: usize| octant >> axis & 1;
-            open.push((
-                child,
-                std::array::from_fn(|axis| 2 * cell[axis] + half(axis)),
-            ));
+            open.push((child, std::array::from_fn(|axis| 2 * cell[axis] + half(axis))));
         }
     }
     cells
@@ -52,22 +45,14 @@ fn voxel_at(cell: [u16; 3]) -> SvoVoxel {
 }
 
 fn grid(edge: u16, is_solid: impl Fn([u16; 3]) -> bool) -> Vec<SvoVoxel> {
-    let cell = |i: u32| {
-        [
-            i % u32::from(edge),
-            i / u32::from(edge) % u32::from(edge),
-            i / u32::from(edge).pow(2),
-        ]
-    };
+    let cell =
+        |i: u32| [i % u32::from(edge), i / u32::from(edge) % u32::from(edge), i / u32::from(edge).pow(2)];
     let all = (0..u32::from(edge).pow(3)).map(|i| cell(i).map(|c| c as u16));
     all.filter(|&c| is_solid(c)).map(voxel_at).collect()
 }
 
 fn expected(voxels: &[SvoVoxel]) -> Cells {
-    voxels
-        .iter()
-        .map(|v| (v.cell, (v.color, v.material)))
-        .collect()
+    voxels.iter().map(|v| (v.cell, (v.color, v.material))).collect()
 }
 
 #[test]
@@ -86,15 +71,8 @@ fn v11_one_voxel() {
     let svo = build(&[voxel_at([5, 1, 6])], UVec3::new(7, 2, 7));
     assert_eq!((svo.nodes.len(), svo.levels), (4, 3));
     assert_eq!(cells(&svo), expected(&[voxel_at([5, 1, 6])]));
-    assert_eq!(
-        svo.nodes.iter().map(|n| n.color >> 24).collect::<Vec<_>>(),
-        [1, 4, 32, 255]
-    );
-    assert!(
-        svo.nodes
-            .iter()
-            .all(|n| n.color & 0xff_ffff == svo.nodes[3].color & 0xff_ffff)
-    );
+    assert_eq!(svo.nodes.iter().map(|n| n.color >> 24).collect::<Vec<_>>(), [1, 4, 32, 255]);
+    assert!(svo.nodes.iter().all(|n| n.color & 0xff_ffff == svo.nodes[3].color & 0xff_ffff));
 }
 
 #[test]
@@ -112,12 +90,7 @@ fn v11_a_checkerboard() {
     let voxels = grid(32, |[x, y, z]| (x + y + z) % 2 == 0);
     let svo = build(&voxels, UVec3::splat(32));
     assert_eq!(svo.nodes.len(), 4 * 8usize.pow(4) + (8usize.pow(5) - 1) / 7);
-    assert!(
-        svo.nodes
-            .iter()
-            .filter(|n| n.child_mask != 0)
-            .all(|n| n.color >> 24 == 128)
-    );
+    assert!(svo.nodes.iter().filter(|n| n.child_mask != 0).all(|n| n.color >> 24 == 128));
     assert_eq!(cells(&svo), expected(&voxels));
 }
 
@@ -134,10 +107,7 @@ fn v11_the_far_corners_of_2048_cubed() {
 
 #[test]
 fn a_box_is_that_of_the_solid_cells() {
-    let svo = build(
-        &[voxel_at([3, 0, 9]), voxel_at([4, 2, 5])],
-        UVec3::splat(16),
-    );
+    let svo = build(&[voxel_at([3, 0, 9]), voxel_at([4, 2, 5])], UVec3::splat(16));
     assert!(svo.bounds.lo.distance(Vec3::new(3.0, 0.0, 5.0)) < 1e-5);
     assert!(svo.bounds.hi.distance(Vec3::new(5.0, 3.0, 10.0)) < 1e-5);
     for cell in [[3, 0, 9], [4, 2, 5]] {
@@ -147,16 +117,8 @@ fn a_box_is_that_of_the_solid_cells() {
 
 #[test]
 fn the_last_of_equal_cells_wins() {
-    let first = SvoVoxel {
-        color: [1, 2, 3],
-        material: 1,
-        ..voxel_at([2; 3])
-    };
-    let last = SvoVoxel {
-        color: [9, 8, 7],
-        material: 2,
-        ..voxel_at([2; 3])
-    };
+    let first = SvoVoxel { color: [1, 2, 3], material: 1, ..voxel_at([2; 3]) };
+    let last = SvoVoxel { color: [9, 8, 7], material: 2, ..voxel_at([2; 3]) };
     let svo = build(&[first, voxel_at([0; 3]), last], UVec3::splat(4));
     assert_eq!(cells(&svo)[&[2; 3]], ([9, 8, 7], 2));
 }
@@ -166,17 +128,10 @@ fn voxels_outside_are_refused() {
     let outside = voxel_at([1, 5, 1]);
     assert_eq!(
         build_svo(&[voxel_at([0; 3]), outside], UVec3::new(8, 5, 8)),
-        Err(AccelError::VoxelOutside {
-            voxel: 1,
-            cell: [1, 5, 1],
-            size: [8, 5, 8]
-        })
+        Err(AccelError::VoxelOutside { voxel: 1, cell: [1, 5, 1], size: [8, 5, 8] })
     );
     let too_large = UVec3::new(1, 2049, 1);
-    assert_eq!(
-        build_svo(&[], too_large),
-        Err(AccelError::VolumeTooLarge { size: [1, 2049, 1] })
-    );
+    assert_eq!(build_svo(&[], too_large), Err(AccelError::VolumeTooLarge { size: [1, 2049, 1] }));
 }
 
 #[test]

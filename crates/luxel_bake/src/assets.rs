@@ -88,7 +88,8 @@ impl<A: BakedAsset> Built<A> {
     fn release_unused(&mut self, assets: &Assets, heaps: &mut Heaps, journal: &mut Journal) {
         let users = &self.users;
         let is_current = |id: &AssetId, structure: &Structure<A>| {
-            users.contains_key(id) && A::find(assets, *id).is_some_and(|asset| Arc::ptr_eq(asset, &structure.asset))
+            users.contains_key(id)
+                && A::find(assets, *id).is_some_and(|asset| Arc::ptr_eq(asset, &structure.asset))
         };
         for (_, structure) in self.structures.extract_if(.., |id, structure| !is_current(id, structure)) {
             if let Ok(built) = structure.outcome {
@@ -99,7 +100,9 @@ impl<A: BakedAsset> Built<A> {
     }
 
     fn build_missing(&mut self, assets: &Assets, heaps: &mut Heaps, journal: &mut Journal) {
-        for id in self.users.keys().filter(|id| !self.structures.contains_key(id)).copied().collect::<Vec<_>>() {
+        for id in
+            self.users.keys().filter(|id| !self.structures.contains_key(id)).copied().collect::<Vec<_>>()
+        {
             let Some(asset) = A::find(assets, id) else { continue };
             let outcome = asset.build(heaps, journal);
             *A::counters(&mut journal.counters).0 += u64::from(outcome.is_ok());
@@ -141,4 +144,3 @@ pub(crate) fn build_assets<A: BakedAsset>(
         journal.error(entity, A::TOPIC, complaint);
     }
 }
-

@@ -21,6 +21,7 @@ use crate::report::{BakeReport, report};
 use crate::spheres::place_spheres;
 use crate::store::Heaps;
 use crate::tlas::{Tlas, update_tlas};
+use crate::validate::validate;
 use crate::{BakeCounters, BakeError};
 
 /// The steps of a run, one after the other.
@@ -74,7 +75,8 @@ pub struct Baker {
 }
 
 impl Baker {
-    /// A baker for a world, which it [`install`]s itself into. The first run takes in everything that is there.
+    /// A baker for a world, which it [`install`]s itself into. The first run takes in everything that is
+    /// there.
     ///
     /// # Errors
     /// [`BakeError::Schedule`] if the systems contradict each other.
@@ -92,8 +94,8 @@ impl Baker {
     /// Calls [`World::clear_trackers`]; nobody else may, or removals could be missed.
     ///
     /// # Errors
-    /// What keeps the scene from being shown. [`Self::latest`] stays what it was, nothing is lost, and the next run
-    /// goes on from there.
+    /// What keeps the scene from being shown. [`Self::latest`] stays what it was, nothing is lost, and the
+    /// next run goes on from there.
     pub fn run(&mut self, world: &mut World) -> Result<Arc<FlatScene>, BakeError> {
         if world.id() != self.world {
             return Err(BakeError::OtherWorld);
@@ -102,19 +104,25 @@ impl Baker {
         world.resource_mut::<Revision>().0 += 1;
         self.schedule.run(world);
         world.clear_trackers();
-        let published = world.resource::<Published>();
-        published.outcome.clone()?;
-        published.latest().cloned().ok_or(BakeError::NoCamera)
+        world.resource::<Published>().outcome.clone()
     }
 
     /// The last good scene, if there was one.
     pub fn latest(&self, world: &World) -> Option<Arc<FlatScene>> {
-        world.get_resource::<Published>()?.latest().cloned()
+        world.get_resource::<Published>()?.latest.clone()
     }
 
     /// Facts about the last good scene. Costs a walk through every structure.
     pub fn report(&self, world: &World) -> BakeReport {
         report(world)
+    }
+
+    /// Checks every structure: for tests, and for suspicious users.
+    ///
+    /// # Errors
+    /// [`BakeError::Structure`] with the first fault.
+    pub fn validate(&self, world: &World) -> Result<(), BakeError> {
+        validate(world)
     }
 }
 

@@ -1,14 +1,14 @@
 //! The camera that the picture is taken with.
 //!
-//! It looks down its −Z with +Y up; its own scale is ignored. Of several cameras the one marked `ActiveCamera`
-//! counts; among equals, and if none is marked, the one of the smallest stable id.
+//! It looks down its −Z with +Y up; its own scale is ignored. Of several cameras the one marked
+//! `ActiveCamera` counts; among equals, and if none is marked, the one of the smallest stable id.
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use luxel_flat::CameraRecord;
 use luxel_scene::{ActiveCamera, Camera, GlobalTransform, Name, StableId, Transform};
 
 use crate::BakeError;
-use crate::lattice::LARGEST;
+use crate::lattice::{FARTHEST, LARGEST};
 use crate::objects::label;
 
 /// The camera in world space, or why there is none.
@@ -41,7 +41,7 @@ pub(crate) struct CameraView {
 impl CameraView {
     fn new(camera: &Camera, global: &GlobalTransform, own: &Transform) -> Result<Self, &'static str> {
         let eye = global.0.translation;
-        if !eye.is_finite() || eye.abs().max_element() > LARGEST {
+        if !eye.is_finite() || eye.abs().max_element() > FARTHEST {
             return Err("the camera is too far away for single precision, or nowhere");
         }
         check_lens(camera)?;
@@ -89,7 +89,8 @@ fn check_lens(camera: &Camera) -> Result<(), &'static str> {
     Ok(())
 }
 
-/// Right, up and back of a camera. Under a sheared or mirrored parent, back is exact, up as near as it can be.
+/// Right, up and back of a camera. Under a sheared or mirrored parent, back is exact, up as near as it can
+/// be.
 fn frame(global: &GlobalTransform, own: &Transform) -> Option<(DVec3, DVec3, DVec3)> {
     // The sign of the camera's own scale must not turn it over.
     let matrix = global.0.matrix3 * glam::DMat3::from_diagonal(own.scale.signum());
@@ -126,7 +127,8 @@ mod tests {
     use glam::{DQuat, Vec3};
 
     fn record(own: Transform, parent: Transform) -> CameraRecord {
-        let camera = Camera { vertical_fov: std::f64::consts::FRAC_PI_2, lens_radius: 0.5, focus_distance: 3.0 };
+        let camera =
+            Camera { vertical_fov: std::f64::consts::FRAC_PI_2, lens_radius: 0.5, focus_distance: 3.0 };
         let global = GlobalTransform(parent.affine() * own.affine());
         CameraView::new(&camera, &global, &own).unwrap().record(DVec3::ONE, 200, 100)
     }
@@ -158,19 +160,26 @@ mod tests {
         let own = Transform { rotation: DQuat::from_rotation_z(0.3), ..Transform::default() };
         let record = record(own, Transform { scale: DVec3::new(1.0, 5.0, 2.0), ..Transform::default() });
         let (right, up) = (Vec3::from(record.right), Vec3::from(record.up));
-        assert!(right.dot(up).abs() < 1e-6 && (right.length() - 1.0).abs() < 1e-6 && (up.length() - 1.0).abs() < 1e-6);
+        assert!(
+            right.dot(up).abs() < 1e-6
+                && (right.length() - 1.0).abs() < 1e-6
+                && (up.length() - 1.0).abs() < 1e-6
+        );
     }
 
     #[test]
     fn senseless_cameras_are_refused() {
         let good = Camera::default();
-        let place = |own: Transform, camera: Camera| CameraView::new(&camera, &GlobalTransform(own.affine()), &own);
+        let place =
+            |own: Transform, camera: Camera| CameraView::new(&camera, &GlobalTransform(own.affine()), &own);
         assert!(place(Transform::default(), good).is_ok());
         for fov in [0.0, -1.0, 4.0, f64::NAN] {
             assert!(place(Transform::default(), Camera { vertical_fov: fov, ..good }).is_err(), "{fov}");
         }
         assert!(place(Transform::default(), Camera { lens_radius: -1.0, ..good }).is_err());
-        assert!(place(Transform::default(), Camera { lens_radius: 1.0, focus_distance: 0.0, ..good }).is_err());
+        assert!(
+            place(Transform::default(), Camera { lens_radius: 1.0, focus_distance: 0.0, ..good }).is_err()
+        );
         assert!(place(Transform { scale: DVec3::ZERO, ..Transform::default() }, good).is_err());
         assert!(place(Transform::at(DVec3::NAN), good).is_err());
     }

@@ -10,8 +10,8 @@ use luxel_accel::{AccelError, RootCell, SphereOctree};
 use luxel_flat::{Span, SphereRecord};
 
 use crate::identities::Identities;
-use crate::lattice::{CloudFrame, Extent};
 use crate::journal::Journal;
+use crate::lattice::{CloudFrame, Extent};
 use crate::{BakeError, SpanAllocator};
 
 /// A sphere in world space, as its entity says.
@@ -123,10 +123,11 @@ impl Cloud {
         Ok(())
     }
 
-    /// Notes an entity's sphere; `None` if nothing changed. The slot of a sphere that goes is given back later, once
-    /// the octree has let go of it.
+    /// Notes an entity's sphere; `None` if nothing changed. The slot of a sphere that goes is given back
+    /// later, once the octree has let go of it.
     fn note(&mut self, entity: Entity, new: Option<Ball>) -> Result<Option<Edit>, BakeError> {
-        let (slot, old) = self.balls.get(&entity).map_or((None, None), |(slot, ball)| (Some(*slot), Some(*ball)));
+        let (slot, old) =
+            self.balls.get(&entity).map_or((None, None), |(slot, ball)| (Some(*slot), Some(*ball)));
         if old == new {
             return Ok(None);
         }
@@ -185,7 +186,8 @@ impl Cloud {
 
     /// Builds the octree of all spheres in other coordinates. Slots stay.
     fn rebuild(&mut self, frame: CloudFrame, journal: &mut Journal) -> Result<(), BakeError> {
-        let mut spheres: Vec<_> = self.balls.values().map(|(slot, ball)| (*slot, ball.record(&frame))).collect();
+        let mut spheres: Vec<_> =
+            self.balls.values().map(|(slot, ball)| (*slot, ball.record(&frame))).collect();
         spheres.sort_unstable_by_key(|(slot, _)| *slot);
         self.octree = SphereOctree::build(root(&frame), &spheres, journal.revision())?;
         self.frame = frame;

@@ -1,7 +1,7 @@
 //! What the scene calls for, found in the flat records that a ray can reach.
 //!
-//! Only what is visible counts, and of a palette only entries that a voxel uses. What the primitives call for is
-//! looked for again only when a record that it was read from has a newer stamp.
+//! Only what is visible counts, and of a palette only entries that a voxel uses. What the primitives call
+//! for is looked for again only when a heap that it was read from has another stamp or length.
 use bevy_ecs::prelude::*;
 use luxel_flat::{
     Feature, FeatureSet, KIND_MESH, MATERIAL_DIELECTRIC, MATERIAL_EMISSIVE, MATERIAL_LAMBERT, MATERIAL_METAL,
@@ -21,7 +21,8 @@ use crate::store::Heaps;
 pub(crate) struct Features {
     all: FeatureSet,
     of_objects: FeatureSet,
-    key: [u64; 3],
+    /// Stamp and length of each heap that `of_objects` was read from.
+    key: [(u64, usize); 3],
 }
 
 impl Features {
@@ -44,7 +45,12 @@ pub(crate) fn find_features(
     mut journal: Journal,
 ) {
     let records = &heaps.materials.records.heap;
-    let key = [records.revision(), heaps.instances.heap.revision(), cloud.octree().spheres().revision()];
+    let (instance_records, spheres) = (&heaps.instances.heap, cloud.octree().spheres());
+    let key = [
+        (records.revision(), records.len()),
+        (instance_records.revision(), instance_records.len()),
+        (spheres.revision(), spheres.len()),
+    ];
     if key != features.key {
         features.key = key;
         features.of_objects = of_objects(&heaps, &cloud, &instances, &volumes);
@@ -65,7 +71,12 @@ fn has_roulette(settings: &RenderSettings) -> bool {
     settings.max_depth >= settings.roulette_depth.max(1)
 }
 
-fn of_objects(heaps: &Heaps, cloud: &Cloud, instances: &Instances, volumes: &Built<VolumeAsset>) -> FeatureSet {
+fn of_objects(
+    heaps: &Heaps,
+    cloud: &Cloud,
+    instances: &Instances,
+    volumes: &Built<VolumeAsset>,
+) -> FeatureSet {
     let (records, materials) = (heaps.instances.heap.as_slice(), heaps.materials.records.heap.as_slice());
     let of_slots = |slots: &mut dyn Iterator<Item = u32>| {
         slots.fold(FeatureSet::NONE, |set, slot| set.union(of_material(&materials[slot as usize])))

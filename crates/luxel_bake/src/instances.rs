@@ -1,7 +1,7 @@
 //! Placed objects: the sphere cloud, mesh instances, volume instances, each with a slot that it keeps.
 //!
-//! Records are relative to the origin of tracer space. As long as that stays, only the records of touched objects
-//! are written; when it moves, all are.
+//! Records are relative to the origin of tracer space. As long as that stays, only the records of touched
+//! objects are written; when it moves, all are.
 use std::collections::BTreeMap;
 
 use bevy_ecs::prelude::*;
@@ -125,19 +125,20 @@ pub(crate) fn place_objects(
         let volume = object.as_ref().map_or(Ok(None), |object| structures.volume(object));
         let volume = journal.settle(entity, Topic::VolumeInstance, volume);
         for (part, source) in [(Part::Mesh(entity), mesh), (Part::Volume(entity), volume)] {
-            if let Err(error) = instances.note(part, source, &mut heaps.instances, revision) {
-                journal.error(entity, Topic::MeshInstance, Some(error));
-            }
+            let noted = instances.note(part, source, &mut heaps.instances, revision);
+            journal.error(entity, Topic::Slot, noted.err());
         }
     }
     let noted = instances.note(Part::Cloud, structures.cloud(), &mut heaps.instances, revision);
-    journal.error(Entity::PLACEHOLDER, Topic::MeshInstance, noted.err());
+    journal.error(Entity::PLACEHOLDER, Topic::Slot, noted.err());
 }
 
 impl Structures<'_> {
     fn mesh(&self, object: &ObjectItem) -> Result<Option<Source>, Refusal> {
         let built = object.mesh.and_then(|instance| self.meshes.get(instance.mesh));
-        let (Some(mesh), Some(material_first)) = (built, self.slots.first(object.entity)) else { return Ok(None) };
+        let (Some(mesh), Some(material_first)) = (built, self.slots.first(object.entity)) else {
+            return Ok(None);
+        };
         let header = Instance {
             kind: KIND_MESH,
             node_first: mesh.nodes.first,
@@ -169,7 +170,8 @@ impl Structures<'_> {
         let octree = self.cloud.octree();
         let header =
             Instance { kind: KIND_SPHERES, node_count: octree.nodes().len() as u32, ..Instance::default() };
-        let placement = Placement::new(DAffine3::from_translation(self.cloud.anchor()), octree.bounds()).ok()?;
+        let placement =
+            Placement::new(DAffine3::from_translation(self.cloud.anchor()), octree.bounds()).ok()?;
         Some(Source { placement, header, volume: None })
     }
 }
@@ -196,7 +198,8 @@ pub(crate) fn write_instances(
     mut heaps: ResMut<Heaps>,
     mut journal: Journal,
 ) {
-    let anchor = view.eye().map_or(instances.anchor, |eye| tracer_anchor(eye, instances.extent(&cloud).as_ref()));
+    let anchor =
+        view.eye().map_or(instances.anchor, |eye| tracer_anchor(eye, instances.extent(&cloud).as_ref()));
     let parts: Vec<Part> = if anchor == instances.anchor {
         let of_entity = |entity: &Entity| [Part::Mesh(*entity), Part::Volume(*entity)];
         touched.0.iter().flat_map(of_entity).chain([Part::Cloud]).collect()
@@ -207,13 +210,11 @@ pub(crate) fn write_instances(
     instances.anchor = anchor;
     for part in parts {
         let Some((slot, source)) = instances.placed.get(&part) else { continue };
-        let record = source.placement.record(anchor);
-        if let Err(reason) = record {
-            warn(part, reason, &objects, &mut journal);
-        }
-        let header = source.header;
-        let record = record.map_or(Instance::default(), |record| with_header(record, header));
-        journal.counters.instances_written += u64::from(heaps.instances.set(*slot, record, journal.revision()));
+        let place = source.placement.record(anchor);
+        warn(part, place.err(), &objects, &mut journal);
+        let record = place.map_or(Instance::default(), |place| with_header(place, source.header));
+        let written = heaps.instances.set(*slot, record, journal.revision());
+        journal.counters.instances_written += u64::from(written);
     }
 }
 
@@ -228,14 +229,16 @@ fn with_header(place: Instance, header: Instance) -> Instance {
     }
 }
 
-/// Says that an object is too far from the camera to be drawn.
-fn warn(part: Part, reason: Disabled, objects: &Query<Object>, journal: &mut Journal) {
+/// States whether an object is too far from the camera to be drawn.
+fn warn(part: Part, reason: Option<Disabled>, objects: &Query<Object>, journal: &mut Journal) {
     let (entity, topic) = match part {
         Part::Cloud => return,
         Part::Mesh(entity) => (entity, Topic::MeshInstance),
         Part::Volume(entity) => (entity, Topic::VolumeInstance),
     };
-    if let Ok(object) = objects.get(entity) {
-        _ = journal.settle::<()>(entity, topic, Err(Refusal::disabled(&object, reason)));
-    }
+    let outcome = match (reason, objects.get(entity)) {
+        (Some(reason), Ok(object)) => Err(Refusal::disabled(&object, reason)),
+        _ => Ok(None::<()>),
+    };
+    journal.settle(entity, topic, outcome);
 }

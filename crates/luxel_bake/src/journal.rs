@@ -1,7 +1,7 @@
 //! What the systems write down while they work: the revision of the run, work done, complaints.
 //!
-//! Complaints are state, not events: each has a place (entity and topic), is looked at again whenever the entity
-//! is touched, and goes away with its cause.
+//! Complaints are state, not events: each has a place (entity and topic), is looked at again whenever the
+//! entity is touched, and goes away with its cause.
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -26,6 +26,7 @@ pub(crate) enum Topic {
     MeshInstance,
     Volume,
     VolumeInstance,
+    Slot,
     Tlas,
 }
 
@@ -36,7 +37,8 @@ pub enum Disabled {
     NotFinite,
     /// Its transform has no inverse: a scale of zero, or axes in one plane.
     Singular,
-    /// It is farther away, larger or smaller than single precision can handle: beyond 2^±60 metres.
+    /// It is farther away, larger or smaller than single precision can handle: beyond 2^±60 metres
+    /// (2^58 for spheres).
     OutOfRange,
     /// A sphere whose radius is not a positive number.
     BadRadius,
@@ -78,7 +80,10 @@ impl fmt::Display for BakeWarning {
         match self {
             Self::Disabled { entity, reason } => write!(f, "{entity} is not shown: {reason}"),
             Self::NonUniformSphere { entity } => {
-                write!(f, "{entity} is scaled differently along its axes; it is drawn as a sphere of the largest")
+                write!(
+                    f,
+                    "{entity} is scaled differently along its axes; it is drawn as a sphere of the largest"
+                )
             }
         }
     }

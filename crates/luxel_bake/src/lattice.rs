@@ -1,8 +1,8 @@
 //! Where local coordinates begin: power-of-two lattices that follow from the content alone.
 //!
-//! Worlds are in f64, tracers in f32. Everything that a tracer sees is relative to an anchor on a lattice of
-//! powers of two, so that subtracting it is exact for coordinates that are not absurdly fine, and a world moved
-//! by a multiple of the lattice's step gives the same bits (design.md §3, X01).
+//! Worlds are in f64, tracers in f32. Everything that a tracer sees is relative to an anchor on a lattice
+//! of powers of two, so that subtracting it is exact for coordinates that are not absurdly fine, and a
+//! world moved by a multiple of the lattice's step gives the same bits (design.md §3, X01).
 //!
 //! The extent is built from origins and reaches, not from boxes: differences of origins survive a translation
 //! exactly, rounded box corners do not.
@@ -11,6 +11,10 @@ use glam::DVec3;
 /// Farthest coordinate, largest scale and largest inverse scale that single precision gets along with: its
 /// square, summed three times, is still finite.
 pub(crate) const LARGEST: f64 = (1u64 << 60) as f64;
+
+/// Farthest that a sphere reaches and a camera stands from the world's origin: so that the way from the
+/// tracers' anchor to the cloud's, and from there to its last sphere, stays below [`LARGEST`].
+pub(crate) const FARTHEST: f64 = LARGEST / 4.0;
 
 /// Where things are: the box of their origins, and how far the largest reaches from its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,8 +65,8 @@ pub(crate) struct CloudFrame {
 }
 
 impl CloudFrame {
-    /// The frame of a cloud. Its anchor lies at most half a step from the centre, and the spheres another half
-    /// step from there, so a half edge of one step holds them.
+    /// The frame of a cloud. Its anchor lies at most half a step from the centre, and the spheres another
+    /// half step from there, so a half edge of one step holds them.
     pub(crate) fn of(extent: Option<&Extent>) -> Self {
         let Some(extent) = extent else { return Self { anchor: DVec3::ZERO, half_extent: 1.0 } };
         let step = power_of_two_at_least(extent.size());
@@ -105,7 +109,9 @@ mod tests {
 
     #[test]
     fn the_root_cell_holds_the_cloud() {
-        for (lo, hi, reach) in [(-3.0, 900.0, 0.25), (1e6, 1e6 + 1.0, 1000.0), (5.0, 5.0, 1e-3), (0.0, 1.0, 0.0)] {
+        for (lo, hi, reach) in
+            [(-3.0, 900.0, 0.25), (1e6, 1e6 + 1.0, 1000.0), (5.0, 5.0, 1e-3), (0.0, 1.0, 0.0)]
+        {
             let extent = Extent { lo: DVec3::splat(lo), hi: DVec3::new(lo, lo, hi), reach };
             let frame = CloudFrame::of(Some(&extent));
             let far = (extent.lo - reach - frame.anchor).abs().max((extent.hi + reach - frame.anchor).abs());
@@ -121,7 +127,10 @@ mod tests {
             let moved = Extent { lo: extent.lo + move_by, hi: extent.hi + move_by, ..extent };
             let (here, there) = (CloudFrame::of(Some(&extent)), CloudFrame::of(Some(&moved)));
             assert_eq!(there, CloudFrame { anchor: here.anchor + move_by, ..here });
-            assert_eq!(tracer_anchor(origin + move_by, Some(&moved)), tracer_anchor(origin, Some(&extent)) + move_by);
+            assert_eq!(
+                tracer_anchor(origin + move_by, Some(&moved)),
+                tracer_anchor(origin, Some(&extent)) + move_by
+            );
         }
     }
 

@@ -1,7 +1,7 @@
 //! Material records: a slot per entity that needs one, a range of slots per palette.
 //!
-//! A record's header says whether it emits and where its radiance stands, so the record itself is the memory of
-//! which parameter it owns. A free slot holds a zero record and owns nothing.
+//! A record's header says whether it emits and where its radiance stands, so the record itself is the
+//! memory of which parameter it owns. A free slot holds a zero record and owns nothing.
 use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
 use glam::Vec3;
@@ -34,7 +34,12 @@ impl MaterialStore {
     }
 
     /// Makes a slot say what the material says; writes only what differs.
-    pub(crate) fn write(&mut self, slot: u32, material: &Material, journal: &mut Journal) -> Result<(), BakeError> {
+    pub(crate) fn write(
+        &mut self,
+        slot: u32,
+        material: &Material,
+        journal: &mut Journal,
+    ) -> Result<(), BakeError> {
         let param = self.write_emission(slot, material.emission, journal)?;
         let written = self.records.set(slot, record(material, param), journal.revision());
         journal.counters.materials_written += u64::from(written);
@@ -52,7 +57,12 @@ impl MaterialStore {
     }
 
     /// The parameter range that a slot needs, filled in.
-    fn write_emission(&mut self, slot: u32, emission: Vec3, journal: &mut Journal) -> Result<Span, BakeError> {
+    fn write_emission(
+        &mut self,
+        slot: u32,
+        emission: Vec3,
+        journal: &mut Journal,
+    ) -> Result<Span, BakeError> {
         let (old, revision) = (param(&self.records.get(slot)), journal.revision());
         if emission.max_element() <= 0.0 {
             self.params.release(old, revision);
@@ -121,8 +131,8 @@ pub(crate) fn shade(
     }
 }
 
-/// One slot for a sphere or a mesh. A volume shows its palette; but if the entity has a material of its own, every
-/// palette entry becomes that one, and needs a slot.
+/// One slot for a sphere or a mesh. A volume shows its palette; but if the entity has a material of its
+/// own, every palette entry becomes that one, and needs a slot.
 fn slots_needed(object: &ObjectItem, assets: &Assets) -> u32 {
     let palette = object.volume.filter(|_| object.material.is_some()).and_then(|v| assets.volume(v.volume));
     let palette = palette.map_or(0, |volume| volume.grid.palette.len() as u32);

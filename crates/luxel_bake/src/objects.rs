@@ -1,8 +1,8 @@
 //! The entities that a picture may hold, and which of them changed since the last run.
 //!
-//! Every later system goes through [`Touched`] and makes what it keeps of an entity equal to what the entity says
-//! now, whatever the reason for the change: adding, editing, hiding and removing are one path. Touching an
-//! entity without need costs a comparison and changes nothing.
+//! Every later system goes through [`Touched`] and makes what it keeps of an entity equal to what the
+//! entity says now, whatever the reason for the change: adding, editing, hiding and removing are one path.
+//! Touching an entity without need costs a comparison and changes nothing.
 use bevy_ecs::entity::EntityHashSet;
 use bevy_ecs::lifecycle::RemovedComponents;
 use bevy_ecs::prelude::*;
@@ -68,6 +68,8 @@ type AnythingChanged = Or<(
     Changed<VoxelVolume>,
 )>;
 
+type ShowsAsset = Or<(With<MeshInstance>, With<VoxelVolume>)>;
+
 /// What was taken from entities, or with them, since the last run.
 #[derive(SystemParam)]
 pub(crate) struct Removals<'w, 's> {
@@ -98,7 +100,7 @@ pub(crate) fn find_touched(
     changed: Query<Entity, AnythingChanged>,
     mut removed: Removals,
     assets: Res<Assets>,
-    asset_users: Query<Entity, Or<(With<MeshInstance>, With<VoxelVolume>)>>,
+    asset_users: Query<Entity, ShowsAsset>,
 ) {
     let mut entities: EntityHashSet = changed.iter().chain(removed.entities()).collect();
     if assets.is_changed() {

@@ -1,7 +1,7 @@
 //! From an object's world transform to its instance record, and whether it can have one.
 //!
-//! The inverse is computed in f64 and rounded once (I01). An object whose transform cannot be inverted or leaves
-//! the range of single precision is left out, alone (I02).
+//! The inverse is computed in f64 and rounded once (I01). An object whose transform cannot be inverted or
+//! leaves the range of single precision is left out, alone (I02).
 use glam::{DAffine3, DMat3, DVec3};
 use luxel_flat::Instance;
 use luxel_geom::{Aabb, Affine};
@@ -31,18 +31,15 @@ impl Placement {
         if object_box.is_empty() {
             return Err(Disabled::Empty);
         }
-        let lengths: f64 = [matrix.x_axis, matrix.y_axis, matrix.z_axis].iter().map(|axis| axis.length()).product();
-        if matrix.determinant().abs() <= lengths * FLATTEST {
+        let lengths = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.length());
+        let is_large = largest_element(&matrix) > LARGEST;
+        if !is_large && matrix.determinant().abs() <= lengths.iter().product::<f64>() * FLATTEST {
             return Err(Disabled::Singular);
         }
         let placement = Self { world_from_object, object_from_world: matrix.inverse(), object_box };
-        let largest = [
-            largest_element(&matrix),
-            largest_element(&placement.object_from_world),
-            world_from_object.translation.abs().max_element() + placement.reach(),
-        ];
-        // Written so that a NaN is out of range too.
-        if largest.iter().all(|x| *x <= LARGEST) { Ok(placement) } else { Err(Disabled::OutOfRange) }
+        let farthest = world_from_object.translation.abs().max_element() + placement.reach();
+        let is_small = largest_element(&placement.object_from_world) > LARGEST;
+        if is_large || is_small || farthest > LARGEST { Err(Disabled::OutOfRange) } else { Ok(placement) }
     }
 
     /// Where the object is and how large.
@@ -62,8 +59,7 @@ impl Placement {
         let translation = self.world_from_object.translation - anchor;
         let inverse_translation = -(self.object_from_world * translation);
         let farthest = translation.abs().max_element().max(inverse_translation.abs().max_element());
-        // Written so that a NaN is out of range too.
-        if !(farthest <= LARGEST) {
+        if farthest > LARGEST {
             return Err(Disabled::OutOfRange);
         }
         let affine = |matrix3, translation| Affine::<f32>::from_daffine(&DAffine3 { matrix3, translation });
@@ -80,7 +76,7 @@ impl Placement {
 }
 
 fn largest_element(matrix: &DMat3) -> f64 {
-    matrix.to_cols_array().into_iter().map(f64::abs).fold(0.0, |a, b| if b <= a { a } else { b })
+    matrix.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -93,12 +89,17 @@ mod tests {
     }
 
     fn scaled(scale: DVec3) -> DAffine3 {
-        DAffine3::from_scale_rotation_translation(scale, DQuat::from_rotation_y(0.7), DVec3::new(1.0, 2.0, 3.0))
+        DAffine3::from_scale_rotation_translation(
+            scale,
+            DQuat::from_rotation_y(0.7),
+            DVec3::new(1.0, 2.0, 3.0),
+        )
     }
 
     #[test]
     fn bad_transforms_are_named() {
-        let flat_below_turned = scaled(DVec3::new(1.0, 1.0, 0.0)) * DAffine3::from_quat(DQuat::from_rotation_x(0.3));
+        let flat_below_turned =
+            scaled(DVec3::new(1.0, 1.0, 0.0)) * DAffine3::from_quat(DQuat::from_rotation_x(0.3));
         for (transform, reason) in [
             (scaled(DVec3::new(1.0, 1.0, 0.0)), Disabled::Singular),
             (flat_below_turned, Disabled::Singular),
@@ -107,6 +108,7 @@ mod tests {
             (scaled(DVec3::NAN), Disabled::NotFinite),
             (DAffine3::from_translation(DVec3::X * f64::INFINITY), Disabled::NotFinite),
             (scaled(DVec3::splat(1e30)), Disabled::OutOfRange),
+            (scaled(DVec3::splat(1e200)), Disabled::OutOfRange),
             (scaled(DVec3::splat(1e-30)), Disabled::OutOfRange),
             (DAffine3::from_translation(DVec3::X * 1e30), Disabled::OutOfRange),
         ] {
@@ -117,7 +119,9 @@ mod tests {
 
     #[test]
     fn hard_but_sound_transforms_pass() {
-        for scale in [DVec3::splat(1e-6), DVec3::splat(1e6), DVec3::new(1.0, 1e3, 1e-3), DVec3::new(-1.0, 1.0, 1.0)] {
+        for scale in
+            [DVec3::splat(1e-6), DVec3::splat(1e6), DVec3::new(1.0, 1e3, 1e-3), DVec3::new(-1.0, 1.0, 1.0)]
+        {
             let transform = scaled(DVec3::new(1.0, 1e3, 1e-3)) * scaled(scale);
             assert!(Placement::new(transform, unit_box()).is_ok(), "{scale}");
         }
@@ -134,8 +138,8 @@ mod tests {
             let there = forth.point(corner);
             assert!((there + anchor - transform.transform_point3(corner)).length() < 1e-6);
             assert!((back.point(there) - corner).length() < 1e-6);
-            let inside = Aabb { lo: Vec3::from(record.lo), hi: Vec3::from(record.hi) };
-            assert!(inside.contains(&Aabb::around(there.as_vec3(), there.as_vec3())));
+            let inside = Aabb::<f32> { lo: Vec3::from(record.lo), hi: Vec3::from(record.hi) };
+            assert!(inside.contains(&Aabb::<f32>::around(there.as_vec3(), there.as_vec3())));
         }
     }
 }

@@ -1,8 +1,8 @@
 //! From local to world: `Transform` and `Visibility` down the hierarchy into `GlobalTransform` and [`Shown`].
 //!
-//! Only subtrees below a change are walked, without recursion, so a chain of any length will do. A world transform
-//! is always the product of its ancestors' transforms from the root downwards: the same bits, wherever the walk
-//! began.
+//! Only subtrees below a change are walked, without recursion, so a chain of any length will do. A world
+//! transform is always the product of its ancestors' transforms from the root downwards: the same bits,
+//! wherever the walk began.
 use bevy_ecs::entity::EntityHashSet;
 use bevy_ecs::lifecycle::RemovedComponents;
 use bevy_ecs::prelude::*;
@@ -47,7 +47,8 @@ impl Place {
 
     fn child(&self, transform: Option<&Transform>, visibility: Option<&Visibility>) -> Self {
         Self {
-            world_from_object: transform.map_or(self.world_from_object, |t| self.world_from_object * t.affine()),
+            world_from_object: transform
+                .map_or(self.world_from_object, |t| self.world_from_object * t.affine()),
             shown: self.shown && visibility.is_none_or(|v| v.0),
         }
     }
@@ -65,9 +66,11 @@ pub(crate) fn propagate(
 ) {
     let removed = transforms_removed.read().chain(visibilities_removed.read()).chain(parents_removed.read());
     let changed: EntityHashSet = changed.iter().chain(removed).collect();
-    let tops: Vec<Entity> = changed.iter().copied().filter(|e| !is_below_another(*e, &changed, &nodes)).collect();
+    let tops: Vec<Entity> =
+        changed.iter().copied().filter(|e| !is_below_another(*e, &changed, &nodes)).collect();
     let mut walked = EntityHashSet::default();
-    let mut open: Vec<(Entity, Place)> = tops.iter().map(|top| (*top, place_of_parent(*top, &nodes))).collect();
+    let mut open: Vec<(Entity, Place)> =
+        tops.iter().map(|top| (*top, place_of_parent(*top, &nodes))).collect();
     while let Some((entity, parent)) = open.pop() {
         journal.error(entity, Topic::Hierarchy, None);
         walked.insert(entity);
@@ -79,7 +82,8 @@ pub(crate) fn propagate(
     hide_cycles(changed.difference(&walked), &mut nodes, &mut journal);
 }
 
-/// True if an ancestor changed too: then the walk from there comes by. Also true in a cycle, where no walk begins.
+/// True if an ancestor changed too: then the walk from there comes by. Also true in a cycle, where no walk
+/// begins.
 fn is_below_another(entity: Entity, changed: &EntityHashSet, nodes: &Query<Node>) -> bool {
     let mut ancestors = ancestors(entity, nodes);
     // No chain without a cycle is longer than there are nodes.

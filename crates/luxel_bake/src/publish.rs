@@ -17,20 +17,13 @@ use crate::tlas::Tlas;
 /// The last good snapshot, and what the last run came to.
 #[derive(Resource)]
 pub(crate) struct Published {
-    latest: Option<Arc<FlatScene>>,
-    pub outcome: Result<(), BakeError>,
+    pub latest: Option<Arc<FlatScene>>,
+    pub outcome: Result<Arc<FlatScene>, BakeError>,
 }
 
 impl Default for Published {
     fn default() -> Self {
-        Self { latest: None, outcome: Ok(()) }
-    }
-}
-
-impl Published {
-    /// The last good snapshot.
-    pub(crate) fn latest(&self) -> Option<&Arc<FlatScene>> {
-        self.latest.as_ref()
+        Self { latest: None, outcome: Err(BakeError::NoCamera) }
     }
 }
 
@@ -49,21 +42,18 @@ pub(crate) struct Parts<'w> {
 
 /// Publishes a snapshot if it differs from the last one and nothing is wrong with the scene.
 pub(crate) fn publish(parts: Parts, mut published: ResMut<Published>, mut journal: Journal) {
-    let outcome = parts.first_error(&journal).map_or_else(|| parts.snapshot(journal.revision()), Err);
-    published.outcome = match outcome {
-        Ok(scene) => {
-            if published.latest.as_ref().is_none_or(|last| differs(&scene, last)) {
-                published.latest = Some(Arc::new(scene));
-                journal.counters.publishes += 1;
-            }
-            Ok(())
+    let snapshot = parts.first_error(&journal).map_or_else(|| parts.snapshot(journal.revision()), Err);
+    published.outcome = snapshot.map(|new| match &published.latest {
+        Some(last) if !differs(&new, last) => Arc::clone(last),
+        _ => {
+            journal.counters.publishes += 1;
+            Arc::clone(published.latest.insert(Arc::new(new)))
         }
-        Err(error) => Err(error),
-    };
+    });
 }
 
-/// True if anyone could tell the two apart. Heaps are compared by their stamps: those of `new` that were written
-/// since `last` are newer than it.
+/// True if anyone could tell the two apart. Heaps are compared by their stamps: those of `new` that were
+/// written since `last` are newer than it.
 fn differs(new: &FlatScene, last: &FlatScene) -> bool {
     fn heap<T: Copy + Default>(new: &Heap<T>, last: &Heap<T>, since: u64) -> bool {
         new.revision() > since || new.len() != last.len()

@@ -68,10 +68,12 @@ pub struct VolumeFacts {
 pub(crate) fn report(world: &World) -> BakeReport {
     let complaints = world.get_resource::<Complaints>();
     let warnings = complaints.map_or(Vec::new(), |c| c.warnings.values().map(ToString::to_string).collect());
-    let Some(scene) = world.get_resource::<Published>().and_then(Published::latest) else {
+    let Some(scene) = world.get_resource::<Published>().and_then(|published| published.latest.as_ref())
+    else {
         return BakeReport { warnings, ..BakeReport::default() };
     };
-    let live = |kind: u32| scene.instances.as_slice().iter().filter(move |i| i.kind == kind && i.node_count > 0);
+    let live =
+        |kind: u32| scene.instances.as_slice().iter().filter(move |i| i.kind == kind && i.node_count > 0);
     BakeReport {
         spheres: scene.spheres.as_slice().iter().filter(|sphere| sphere.radius > 0.0).count() as u64,
         mesh_instances: live(KIND_MESH).count() as u64,

@@ -104,7 +104,9 @@ mod tests {
     proptest! {
         /// Against the obvious model: one flag per record.
         #[test]
-        fn live_spans_never_overlap(steps in prop::collection::vec((any::<bool>(), 0u32..20, any::<usize>()), 1..200)) {
+        fn live_spans_never_overlap(
+            steps in prop::collection::vec((any::<bool>(), 0u32..20, any::<usize>()), 1..200),
+        ) {
             let mut spans = SpanAllocator::default();
             let mut live: Vec<Span> = Vec::new();
             for (take, count, pick) in steps {
@@ -115,7 +117,8 @@ mod tests {
                 }
                 let mut taken = vec![false; spans.end() as usize];
                 for record in live.iter().flat_map(|span| span.range()) {
-                    prop_assert!(!std::mem::replace(&mut taken[record], true), "record {} handed out twice", record);
+                    let is_taken = std::mem::replace(&mut taken[record], true);
+                    prop_assert!(!is_taken, "record {} handed out twice", record);
                 }
                 let idle = taken.iter().filter(|taken| !**taken).count();
                 prop_assert_eq!(idle, spans.free_records() as usize);

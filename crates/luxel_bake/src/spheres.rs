@@ -5,12 +5,12 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 use luxel_scene::GlobalTransform;
 
+use crate::Disabled;
 use crate::cloud::{Ball, Cloud};
 use crate::journal::{BakeWarning, Journal, Refusal, Topic};
-use crate::lattice::LARGEST;
+use crate::lattice::{FARTHEST, LARGEST};
 use crate::materials::MaterialSlots;
 use crate::objects::{Object, ObjectItem, Touched};
-use crate::Disabled;
 
 /// Axis lengths that differ by a smaller share count as equal: what a chain of rotations rounds off.
 const UNIFORM: f64 = 1e-9;
@@ -52,7 +52,7 @@ fn ball(object: &ObjectItem, slots: &MaterialSlots) -> Result<Option<Ball>, Refu
         Some(Disabled::BadRadius)
     } else if radius == 0.0 {
         Some(Disabled::Singular)
-    } else if radius < 1.0 / LARGEST || center.abs().max_element() + radius > LARGEST {
+    } else if radius < 1.0 / LARGEST || center.abs().max_element() + radius > FARTHEST {
         Some(Disabled::OutOfRange)
     } else {
         None

@@ -24,7 +24,12 @@ impl Tlas {
         Span { first: self.room.first, count: self.node_count }
     }
 
-    fn build(&mut self, instances: Vec<(u32, Aabb<f32>)>, heaps: &mut Heaps, revision: u64) -> Result<(), BakeError> {
+    fn build(
+        &mut self,
+        instances: Vec<(u32, Aabb<f32>)>,
+        heaps: &mut Heaps,
+        revision: u64,
+    ) -> Result<(), BakeError> {
         let nodes = build_tlas(&instances)?;
         let count = nodes.len() as u32;
         if count > self.room.count {
@@ -41,13 +46,17 @@ impl Tlas {
 
 /// Builds the TLAS if it is not the one of the instances.
 pub(crate) fn update_tlas(mut tlas: ResMut<Tlas>, mut heaps: ResMut<Heaps>, mut journal: Journal) {
-    let live = (0..).zip(heaps.instances.heap.as_slice()).filter(|(_, instance)| instance.node_count > 0);
-    let instances: Vec<(u32, Aabb<f32>)> =
-        live.map(|(slot, i)| (slot, Aabb { lo: Vec3::from(i.lo), hi: Vec3::from(i.hi) })).collect();
+    let instances = live_instances(&heaps);
     if instances == tlas.built_over {
         return;
     }
     let result = tlas.build(instances, &mut heaps, journal.revision());
     journal.counters.tlas_builds += u64::from(result.is_ok());
     journal.error(Entity::PLACEHOLDER, Topic::Tlas, result.err());
+}
+
+/// Slot and box of every object that can be hit, by rising slot.
+pub(crate) fn live_instances(heaps: &Heaps) -> Vec<(u32, Aabb<f32>)> {
+    let live = (0..).zip(heaps.instances.heap.as_slice()).filter(|(_, instance)| instance.node_count > 0);
+    live.map(|(slot, i)| (slot, Aabb { lo: Vec3::from(i.lo), hi: Vec3::from(i.hi) })).collect()
 }

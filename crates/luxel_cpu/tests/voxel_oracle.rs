@@ -11,21 +11,13 @@ use luxel_testkit::{Random, rays};
 use rayon::prelude::*;
 
 fn voxel(cell: [u16; 3]) -> SvoVoxel {
-    SvoVoxel {
-        cell,
-        color: [200, 100, 50],
-        material: 1,
-    }
+    SvoVoxel { cell, color: [200, 100, 50], material: 1 }
 }
 
 fn grid(edge: u16, is_solid: impl Fn([u16; 3]) -> bool) -> Vec<SvoVoxel> {
     let edge = u32::from(edge);
     let cell = |i: u32| [i % edge, i / edge % edge, i / edge / edge].map(|c| c as u16);
-    (0..edge.pow(3))
-        .map(cell)
-        .filter(|&c| is_solid(c))
-        .map(voxel)
-        .collect()
+    (0..edge.pow(3)).map(cell).filter(|&c| is_solid(c)).map(voxel).collect()
 }
 
 fn sparse(seed: u32, edge: u16, one_in: u32) -> Vec<SvoVoxel> {
@@ -61,9 +53,7 @@ fn t06_lattice_rays_through_a_grid() {
     let scene = volume_scene(32, &voxels, Vec3::ZERO);
     let index = |c: [i32; 3]| (c[0] + 32 * c[1] + 1024 * c[2]) as usize;
     let mut grid = vec![false; 32 * 32 * 32];
-    voxels
-        .iter()
-        .for_each(|v| grid[index(v.cell.map(i32::from))] = true);
+    voxels.iter().for_each(|v| grid[index(v.cell.map(i32::from))] = true);
     let is_solid = |c: [i32; 3]| c.iter().all(|k| (0..32).contains(k)) && grid[index(c)];
     let all = grid_rays(false);
     assert_eq!(all.len(), 26 * 33 * 33 * 33);
@@ -86,18 +76,9 @@ fn t06_lattice_rays_through_a_grid() {
 
 #[test]
 fn v01_random_volumes() {
-    for (seed, edge, one_in) in [
-        (1, 16, 3),
-        (2, 16, 100),
-        (3, 32, 50),
-        (4, 5, 2),
-        (5, 33, 300),
-    ] {
-        let scene = volume_scene(
-            u32::from(edge),
-            &sparse(seed, edge, one_in),
-            -0.5 * Vec3::splat(f32::from(edge)),
-        );
+    for (seed, edge, one_in) in [(1, 16, 3), (2, 16, 100), (3, 32, 50), (4, 5, 2), (5, 33, 300)] {
+        let scene =
+            volume_scene(u32::from(edge), &sparse(seed, edge, one_in), -0.5 * Vec3::splat(f32::from(edge)));
         let all = rays::random(seed, 3000, 1.5 * f32::from(edge));
         assert!(assert_equals_naive(&scene, &all) > 100);
     }
@@ -117,9 +98,7 @@ fn v01_turned_and_scaled_volumes() {
         let scene = SceneBuilder::default().volume(&svo, place).build();
         let center = place.transform_point3(DVec3::splat(10.0)).as_vec3();
         let all = rays::random(8, 2000, 30.0 * scale.abs() as f32).into_iter();
-        let all: Vec<_> = all
-            .map(|ray| Ray::new(ray.origin + center, ray.direction))
-            .collect();
+        let all: Vec<_> = all.map(|ray| Ray::new(ray.origin + center, ray.direction)).collect();
         assert!(assert_equals_naive(&scene, &all) > 500);
     }
 }
@@ -146,11 +125,7 @@ fn v08_inside_on_a_face_and_far_away() {
     }
     // From inside a solid voxel the far side is met, at most a diagonal away.
     assert_eq!(assert_equals_naive(&scene, &inside), inside.len());
-    assert!(
-        inside
-            .iter()
-            .all(|ray| trace(&scene, ray).unwrap().on.t <= 1.8)
-    );
+    assert!(inside.iter().all(|ray| trace(&scene, ray).unwrap().on.t <= 1.8));
     assert_equals_naive(&scene, &on_face);
     assert_eq!(assert_equals_naive(&scene, &far), far.len());
 }
@@ -159,38 +134,23 @@ fn v08_inside_on_a_face_and_far_away() {
 fn v11_an_empty_grid_is_never_hit() {
     let scene = volume_scene(64, &[], Vec3::ZERO);
     assert_eq!(scene.tlas().len(), 0);
-    assert_eq!(
-        assert_equals_naive(&scene, &rays::random(11, 1000, 100.0)),
-        0
-    );
+    assert_eq!(assert_equals_naive(&scene, &rays::random(11, 1000, 100.0)), 0);
 }
 
 #[test]
 fn v11_one_voxel() {
     let mut random = Random::new(11);
-    for (edge, cell) in [
-        (1, [0; 3]),
-        (64, [63, 0, 31]),
-        (2048, [2047, 2047, 2047]),
-        (2048, [1024, 3, 2000]),
-    ] {
+    for (edge, cell) in [(1, [0; 3]), (64, [63, 0, 31]), (2048, [2047, 2047, 2047]), (2048, [1024, 3, 2000])]
+    {
         let scene = volume_scene(edge, &[voxel(cell)], Vec3::ZERO);
         let center = Vec3::from(cell.map(f32::from)) + 0.5;
         let aimed: Vec<_> = (0..500)
-            .map(|_| {
-                (
-                    center + 3000.0 * random.direction(),
-                    center + 0.9 * random.point(0.5),
-                )
-            })
+            .map(|_| (center + 3000.0 * random.direction(), center + 0.9 * random.point(0.5)))
             .map(|(origin, target)| Ray::new(origin, target - origin))
             .collect();
         assert_eq!(assert_equals_naive(&scene, &aimed), aimed.len());
         let around = rays::random(12, 500, 4.0);
-        let around: Vec<_> = around
-            .iter()
-            .map(|r| Ray::new(r.origin + center, r.direction))
-            .collect();
+        let around: Vec<_> = around.iter().map(|r| Ray::new(r.origin + center, r.direction)).collect();
         assert_equals_naive(&scene, &around);
     }
 }
@@ -199,23 +159,14 @@ fn v11_one_voxel() {
 fn v11_a_full_cube_is_met_at_its_surface() {
     let scene = volume_scene(64, &grid(64, |_| true), Vec3::splat(-32.0));
     let outside = |ray: &Ray<f32>| ray.origin.abs().max_element() > 32.5;
-    let all: Vec<_> = rays::random(13, 3000, 100.0)
-        .into_iter()
-        .filter(outside)
-        .collect();
+    let all: Vec<_> = rays::random(13, 3000, 100.0).into_iter().filter(outside).collect();
     for ray in &all {
-        let cube = luxel_geom::Aabb::<f32> {
-            lo: Vec3::splat(-32.0),
-            hi: Vec3::splat(32.0),
-        };
+        let cube = luxel_geom::Aabb::<f32> { lo: Vec3::splat(-32.0), hi: Vec3::splat(32.0) };
         let interval = cube.interval(&luxel_geom::SlabRay::new(ray));
         let exact = interval.overlaps(0.0, 1e30).then_some(interval.enter);
         let t = trace(&scene, ray).map(|h| h.on.t);
         let graze = interval.exit - interval.enter;
-        assert!(
-            t.is_some() == exact.is_some() || graze.abs() < 1e-3,
-            "{ray:?} {t:?} {exact:?}"
-        );
+        assert!(t.is_some() == exact.is_some() || graze.abs() < 1e-3, "{ray:?} {t:?} {exact:?}");
         let off = t.map_or(0.0, |t| ray.at(t).abs().max_element() - 32.0);
         assert!(off.abs() < 1e-4, "{ray:?} {off}");
     }
@@ -224,11 +175,7 @@ fn v11_a_full_cube_is_met_at_its_surface() {
 
 #[test]
 fn v11_a_checkerboard() {
-    let scene = volume_scene(
-        32,
-        &grid(32, |[x, y, z]| (x + y + z) % 2 == 0),
-        Vec3::splat(-16.0),
-    );
+    let scene = volume_scene(32, &grid(32, |[x, y, z]| (x + y + z) % 2 == 0), Vec3::splat(-16.0));
     let mut all = rays::random(14, 1500, 40.0);
     all.extend(rays::random(15, 500, 16.0));
     assert!(assert_equals_naive(&scene, &all) > 800);
@@ -237,16 +184,13 @@ fn v11_a_checkerboard() {
 #[test]
 fn v11_the_far_corners_of_2048_cubed() {
     let corner = |i: u16| [0, 1, 2].map(|k| 2047 * (i >> k & 1));
-    let voxels: Vec<_> = (0..8)
-        .map(|i| voxel(corner(i)))
-        .chain([voxel([1023; 3]), voxel([1024; 3])])
-        .collect();
+    let voxels: Vec<_> =
+        (0..8).map(|i| voxel(corner(i))).chain([voxel([1023; 3]), voxel([1024; 3])]).collect();
     let scene = volume_scene(2048, &voxels, Vec3::ZERO);
     let mut random = Random::new(16);
     let aimed: Vec<_> = (0..4000)
         .map(|i| {
-            let target =
-                Vec3::from(voxels[i % 10].cell.map(f32::from)) + 0.5 + 0.9 * random.point(0.5);
+            let target = Vec3::from(voxels[i % 10].cell.map(f32::from)) + 0.5 + 0.9 * random.point(0.5);
             (1024.0 + 4000.0 * random.direction(), target)
         })
         .map(|(origin, target)| Ray::new(origin, target - origin))

@@ -1,7 +1,7 @@
 //! Which tracer takes a job, and why.
 use luxel_cpu::CpuTracer;
 use luxel_film::tracer::Tracer;
-use luxel_gpu::{AdapterKind, Gpu, GpuRequest, SlicePolicy, SoftwarePolicy};
+use luxel_gpu::{AdapterKind, Gpu, GpuError, GpuRequest, SlicePolicy, SoftwarePolicy};
 use luxel_render::GpuTracer;
 
 use crate::EngineError;
@@ -35,8 +35,7 @@ impl BackendChoice {
         match self {
             Self::Cpu => Ok(cpu("the CPU was asked for".to_owned())),
             Self::Gpu => open_gpu(SoftwarePolicy::Allow),
-            Self::Auto => Ok(open_gpu(SoftwarePolicy::Refuse)
-                .unwrap_or_else(|error| cpu(format!("no hardware GPU can be used ({error})")))),
+            Self::Auto => Ok(open_gpu(SoftwarePolicy::Refuse).unwrap_or_else(|error| cpu(why_not(&error)))),
         }
     }
 }
@@ -48,11 +47,21 @@ pub(crate) fn cpu(because: String) -> ChosenTracer {
 
 fn open_gpu(software: SoftwarePolicy) -> Result<ChosenTracer, EngineError> {
     let gpu = Gpu::open(&GpuRequest { software, ..GpuRequest::from_env() })?;
-    let kind = match gpu.facts().kind {
-        AdapterKind::Hardware => "a hardware GPU",
-        AdapterKind::Software => "a GPU was asked for, and this software driver is what there is",
+    let name = &gpu.facts().name;
+    let because = match gpu.facts().kind {
+        AdapterKind::Hardware => format!("{name} is a hardware GPU"),
+        AdapterKind::Software => format!("a GPU was asked for, and the software driver {name} is what there is"),
     };
-    let because = format!("{} is {kind}", gpu.facts().name);
     let tracer = GpuTracer::new(&gpu, SlicePolicy::HEADLESS)?;
     Ok(ChosenTracer { tracer: Box::new(tracer), because })
+}
+
+/// Why the GPU was not taken, without the advice that goes with an error.
+fn why_not(error: &EngineError) -> String {
+    match error {
+        EngineError::Gpu(GpuError::NoAdapter { wanted, found, .. }) => {
+            format!("there is no GPU adapter {wanted}; found {found}")
+        }
+        other => format!("no hardware GPU can be used ({other})"),
+    }
 }

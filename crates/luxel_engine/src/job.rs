@@ -1,8 +1,8 @@
 //! A render as data: what differs from the scene's own settings, and when to stop.
 use bevy_ecs::prelude::*;
-use luxel_film::StopRule;
+use luxel_film::{StopRule, ToneMap};
 use luxel_flat::FeatureSet;
-use luxel_scene::RenderSettings;
+use luxel_scene::{RenderSettings, ToneMapping};
 
 use crate::{BackendChoice, Engine, EngineError};
 
@@ -26,6 +26,10 @@ pub struct RenderJob {
     pub max_depth: Option<u32>,
     /// Name of the camera.
     pub camera: Option<String>,
+    /// Curve from radiance to display.
+    pub tone_map: Option<ToneMap>,
+    /// Exposure in stops.
+    pub exposure: Option<f32>,
     /// First-hit outputs are wanted.
     pub aovs: bool,
     /// Features to trace with beyond those that the scene calls for.
@@ -49,6 +53,8 @@ impl RenderJob {
         settings.spp = self.spp.unwrap_or(settings.spp);
         settings.seed = self.seed.unwrap_or(settings.seed);
         settings.max_depth = self.max_depth.unwrap_or(settings.max_depth);
+        settings.tone_map = self.tone_map.map_or(settings.tone_map, tone_mapping);
+        settings.exposure = self.exposure.unwrap_or(settings.exposure);
         engine.world.resource_mut::<RenderSettings>().set_if_neq(settings);
         Ok(())
     }
@@ -69,6 +75,9 @@ impl RenderJob {
         if self.error.is_some_and(|e| !(e > 0.0 && e.is_finite())) {
             return refuse("the error limit must be a positive percentage".to_owned());
         }
+        if self.exposure.is_some_and(|stops| !stops.is_finite()) {
+            return refuse("the exposure must be a number of stops".to_owned());
+        }
         Ok(())
     }
 
@@ -82,5 +91,15 @@ impl RenderJob {
             rules.push(StopRule::Samples(settings.spp));
         }
         rules
+    }
+}
+
+/// The name that a scene has for a curve.
+fn tone_mapping(tone_map: ToneMap) -> ToneMapping {
+    match tone_map {
+        ToneMap::None => ToneMapping::None,
+        ToneMap::Reinhard => ToneMapping::Reinhard,
+        ToneMap::Aces => ToneMapping::Aces,
+        ToneMap::AgX => ToneMapping::AgX,
     }
 }

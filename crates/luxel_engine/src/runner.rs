@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use luxel_film::tracer::{Backend, BackendFacts, TraceError, TraceRequest, TraceStats, Tracer};
 use luxel_film::{Film, ImageError, StopRule, StopState};
-use luxel_flat::FlatScene;
+use luxel_flat::{Feature, FlatScene};
 
 use crate::backend::{self, ChosenTracer};
 use crate::{Engine, EngineError, RenderJob};
@@ -79,8 +79,7 @@ impl Engine {
     /// # Errors
     /// When settings are out of range, the scene cannot be baked, or no backend can trace it.
     pub fn render(&mut self, job: &RenderJob, observer: &mut Observer<'_>) -> Result<Rendered, EngineError> {
-        let chosen = job.backend.open()?;
-        self.render_with(chosen, job, observer)
+        self.run(job, observer)?.on(job.backend.open()?)
     }
 
     /// Renders a job on a given tracer. If its device fails, the CPU takes the same job from the start.
@@ -93,18 +92,22 @@ impl Engine {
         job: &RenderJob,
         observer: &mut Observer<'_>,
     ) -> Result<Rendered, EngineError> {
+        self.run(job, observer)?.on(chosen)
+    }
+
+    /// Checks and bakes: whatever is wrong with the input shows before a device is opened.
+    fn run<'a, 'b>(
+        &mut self,
+        job: &RenderJob,
+        observer: &'a mut Observer<'b>,
+    ) -> Result<Run<'a, 'b>, EngineError> {
         job.apply(self)?;
         let scene = self.bake()?;
         let features = scene.features.union(job.extra_features);
-        let request = TraceRequest { scene, features }.with_aovs(job.aovs || features.has(luxel_flat::Feature::Aovs));
+        let aovs = job.aovs || features.has(Feature::Aovs);
+        let request = TraceRequest { scene, features }.with_aovs(aovs);
         let rules = job.stop_rules(&self.settings());
-        let white = self.display().white();
-        let mut run = Run { request, rules, white, observer };
-        match run.drive(chosen) {
-            Ok(rendered) => Ok(rendered),
-            Err((Backend::Cpu, error)) => Err(error.into()),
-            Err((Backend::Gpu, error)) => run.go_on_with_cpu(&error),
-        }
+        Ok(Run { request, rules, white: self.display().white(), observer })
     }
 }
 
@@ -118,6 +121,14 @@ struct Run<'a, 'b> {
 }
 
 impl Run<'_, '_> {
+    fn on(mut self, chosen: ChosenTracer) -> Result<Rendered, EngineError> {
+        match self.drive(chosen) {
+            Ok(rendered) => Ok(rendered),
+            Err((Backend::Cpu, error)) => Err(error.into()),
+            Err((Backend::Gpu, error)) => self.go_on_with_cpu(&error),
+        }
+    }
+
     fn drive(&mut self, mut chosen: ChosenTracer) -> Result<Rendered, (Backend, TraceError)> {
         let facts = chosen.tracer.facts();
         self.trace(&mut chosen, &facts).map_err(|error| (facts.backend, error))

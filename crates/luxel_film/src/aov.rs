@@ -1,7 +1,7 @@
 //! First-hit outputs and film statistics as named channels of an EXR file.
 //!
 //! Names are those that other programs read: `albedo.R`, `N.X`, `Z`, `P.X`, `id.instance`, `samples`, … Where
-//! the camera ray left the scene, albedo holds the sky's radiance and everything else is 0.
+//! the camera ray left the scene, everything is 0.
 use luxel_flat::{Aov, FilmPixel};
 
 use crate::{Film, accumulate};
@@ -70,7 +70,7 @@ impl AovKind {
 
     /// The channels; `None` if they need first-hit outputs and the film has none.
     pub fn layers(self, film: &Film) -> Option<Vec<Layer>> {
-        let hits = if self.needs_first_hits() { film.aovs.as_deref()? } else { &[] };
+        let hits = &if self.needs_first_hits() { film.first_hits()? } else { Vec::new() };
         let anchor = film.anchor;
         Some(match self {
             Self::Albedo => vec![

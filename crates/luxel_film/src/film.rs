@@ -12,7 +12,8 @@ pub struct Film {
     pub height: u32,
     /// Accumulated radiance, `width · height` entries.
     pub pixels: Vec<FilmPixel>,
-    /// First-hit outputs of each pixel's sample 0, if they were asked for; as many as `pixels`.
+    /// First-hit outputs as the tracers keep them, if they were asked for; as many as `pixels`. Albedo and normal
+    /// are sums over samples: read them through [`Film::first_hits`].
     pub aovs: Option<Vec<Aov>>,
     /// Origin of tracer space in world space, metres (`FlatScene::anchor`): turns the tracer-space positions of
     /// `aovs` into world positions.
@@ -29,6 +30,15 @@ impl Film {
     /// Mean radiance of every pixel, linear Rec. 709.
     pub fn beauty(&self) -> Vec<[f32; 3]> {
         self.pixels.iter().map(accumulate::mean).collect()
+    }
+
+    /// First-hit outputs with albedo and normal as means over samples; `None` if they were not asked for.
+    pub fn first_hits(&self) -> Option<Vec<Aov>> {
+        let mean = |(aov, pixel): (&Aov, &FilmPixel)| {
+            let share = 1.0 / pixel.count.max(1) as f32;
+            Aov { albedo: aov.albedo.map(|c| c * share), normal: aov.normal.map(|c| c * share), ..*aov }
+        };
+        Some(self.aovs.as_ref()?.iter().zip(&self.pixels).map(mean).collect())
     }
 
     /// Samples that every pixel has; 0 for a film without pixels.

@@ -88,7 +88,7 @@ impl Display {
     /// The picture, row by row from the upper left corner; `None` if the view needs first-hit outputs and the
     /// film has none.
     pub fn pixels(&self, film: &Film, view: View) -> Option<Vec<[u8; 3]>> {
-        let hits = if view.needs_first_hits() { film.aovs.as_deref()? } else { &[] };
+        let hits = &if view.needs_first_hits() { film.first_hits()? } else { Vec::new() };
         Some(match view {
             View::PathTraced => film.beauty().into_iter().map(|radiance| self.encode(radiance)).collect(),
             View::Albedo => hits.iter().map(|hit| srgb(ToneMap::None.apply(hit.albedo))).collect(),

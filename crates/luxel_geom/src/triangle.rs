@@ -116,11 +116,12 @@ fn edge<R: Real>(a: &Sheared<R>, b: &Sheared<R>) -> (R, R) {
 /// A hit with `t` below this bound may lie behind the origin (pbrt-v4 §6.8.7, Δt).
 fn t_error<R: Real>(s: &[Sheared<R>; 3], det: R, inv_z: R) -> R {
     let largest = |f: fn(&Sheared<R>) -> R| f(&s[0]).abs().max(f(&s[1]).abs()).max(f(&s[2]).abs());
-    let (max_x, max_y) = (largest(|p| p.x), largest(|p| p.y));
-    let max_z = largest(|p| p.z) * inv_z.abs();
+    let (max_x, max_y, depth) = (largest(|p| p.x), largest(|p| p.y), largest(|p| p.z));
+    // A length divided by that of the direction; the others are lengths, so that the bound scales with `t`.
+    let max_z = depth * inv_z.abs();
     let delta_z = R::gamma(3) * max_z;
-    let delta_x = R::gamma(5) * (max_x + max_z);
-    let delta_y = R::gamma(5) * (max_y + max_z);
+    let delta_x = R::gamma(5) * (max_x + depth);
+    let delta_y = R::gamma(5) * (max_y + depth);
     let two = R::from_f64(2.0);
     let delta_e = two * (R::gamma(2) * max_x * max_y + delta_y * max_x + delta_x * max_y);
     let max_e = max_x * max_y * two;

@@ -6,6 +6,7 @@ pub mod meshes;
 pub mod random;
 pub mod rays;
 pub mod spheres;
+pub mod ties;
 
 pub use meshes::TestMesh;
 pub use random::Random;

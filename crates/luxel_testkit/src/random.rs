@@ -43,11 +43,7 @@ impl Random {
 
     /// A point in the cube `[-reach, reach)³`.
     pub fn point(&mut self, reach: f32) -> Vec3 {
-        Vec3::new(
-            self.between(-reach, reach),
-            self.between(-reach, reach),
-            self.between(-reach, reach),
-        )
+        Vec3::new(self.between(-reach, reach), self.between(-reach, reach), self.between(-reach, reach))
     }
 
     /// A direction of length about one.

@@ -10,11 +10,7 @@ pub fn random(seed: u32, count: u32, reach: f32) -> Vec<Ray<f32>> {
     (0..count)
         .map(|i| {
             let origin = random.point(reach);
-            let direction = if i % 2 == 0 {
-                random.point(0.5 * reach) - origin
-            } else {
-                random.direction()
-            };
+            let direction = if i % 2 == 0 { random.point(0.5 * reach) - origin } else { random.direction() };
             Ray::new(origin, direction)
         })
         .collect()
@@ -23,9 +19,7 @@ pub fn random(seed: u32, count: u32, reach: f32) -> Vec<Ray<f32>> {
 /// The 26 directions along axes, face diagonals and space diagonals.
 pub fn lattice_directions() -> impl Iterator<Item = [i32; 3]> {
     let axis = |k: i32, axis: u32| k / 3i32.pow(axis) % 3 - 1;
-    (0..27)
-        .map(move |k| [axis(k, 0), axis(k, 1), axis(k, 2)])
-        .filter(|d| *d != [0; 3])
+    (0..27).map(move |k| [axis(k, 0), axis(k, 1), axis(k, 2)]).filter(|d| *d != [0; 3])
 }
 
 /// A direction of whole numbers, its zeros positive or negative.
@@ -46,11 +40,7 @@ pub fn along_axes_through(point: Vec3, distance: f32, negative_zeros: bool) -> V
 
 /// T06, O05: rays along the 26 directions through each lattice point of `[-half, half]³ · spacing`, starting
 /// outside the cube.
-pub fn through_lattice(
-    half: i32,
-    spacing: f32,
-    negative_zeros: bool,
-) -> impl Iterator<Item = Ray<f32>> {
+pub fn through_lattice(half: i32, spacing: f32, negative_zeros: bool) -> impl Iterator<Item = Ray<f32>> {
     let points = (-half..=half).flat_map(move |x| (-half..=half).map(move |y| [x, y]));
     let points = points.flat_map(move |[x, y]| (-half..=half).map(move |z| [x, y, z]));
     points.flat_map(move |point| {
@@ -82,10 +72,6 @@ mod tests {
     fn lattice_rays_meet_their_point() {
         let rays: Vec<Ray<f32>> = through_lattice(1, 0.5, false).collect();
         assert_eq!(rays.len(), 27 * 26);
-        assert!(
-            rays[..26]
-                .iter()
-                .all(|ray| ray.at(2.5) == Vec3::splat(-0.5))
-        );
+        assert!(rays[..26].iter().all(|ray| ray.at(2.5) == Vec3::splat(-0.5)));
     }
 }

@@ -6,26 +6,13 @@ use crate::Random;
 
 /// A sphere with the given stable id.
 pub fn sphere(center: Vec3, radius: f32, stable_id: u32) -> SphereRecord {
-    SphereRecord {
-        center: center.into(),
-        radius,
-        stable_id,
-        ..SphereRecord::default()
-    }
+    SphereRecord { center: center.into(), radius, stable_id, ..SphereRecord::default() }
 }
 
 /// Random spheres in `[-reach, reach)³`, radii between two bounds on a logarithmic scale.
 pub fn cloud(seed: u32, count: u32, reach: f32, radii: [f32; 2]) -> Vec<SphereRecord> {
     let mut random = Random::new(seed);
-    (0..count)
-        .map(|id| {
-            sphere(
-                random.point(reach),
-                random.log_between(radii[0], radii[1]),
-                id,
-            )
-        })
-        .collect()
+    (0..count).map(|id| sphere(random.point(reach), random.log_between(radii[0], radii[1]), id)).collect()
 }
 
 /// O01: 1000 small and 10 large spheres in the unit cube around the origin.
@@ -44,9 +31,7 @@ pub fn inside_one(seed: u32) -> Vec<SphereRecord> {
 
 /// B03 and O03: spheres with one centre and radii `step`, `2 · step`, …
 pub fn nested(count: u32, step: f32) -> Vec<SphereRecord> {
-    (0..count)
-        .map(|id| sphere(Vec3::ZERO, (id + 1) as f32 * step, id))
-        .collect()
+    (0..count).map(|id| sphere(Vec3::ZERO, (id + 1) as f32 * step, id)).collect()
 }
 
 /// O04: centres on the dividing planes of the cube `[-1, 1]³` down to level 4, radii powers of two, tangent to
@@ -57,11 +42,7 @@ pub fn on_boundaries() -> Vec<SphereRecord> {
         for (j, y) in (-4..=4).enumerate() {
             for (k, z) in (-4..=4).enumerate() {
                 let radius = (-((i + 2 * j + 3 * k) as f32 % 7.0) - 2.0).exp2();
-                all.push(sphere(
-                    Vec3::new(x as f32, y as f32, z as f32) * 0.25,
-                    radius,
-                    0,
-                ));
+                all.push(sphere(Vec3::new(x as f32, y as f32, z as f32) * 0.25, radius, 0));
             }
         }
     }
@@ -83,12 +64,7 @@ mod tests {
 
     #[test]
     fn ids_are_unique() {
-        for spheres in [
-            small_and_large(1),
-            inside_one(2),
-            nested(100, 0.5),
-            on_boundaries(),
-        ] {
+        for spheres in [small_and_large(1), inside_one(2), nested(100, 0.5), on_boundaries()] {
             let mut ids: Vec<u32> = spheres.iter().map(|s| s.stable_id).collect();
             ids.sort_unstable();
             ids.dedup();

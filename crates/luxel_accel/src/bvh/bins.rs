@@ -40,10 +40,7 @@ type Bins = [[Bin; BINS]; 3];
 impl Grid {
     /// A grid over a box of centres.
     pub(super) fn new(centers: Aabb<f32>) -> Self {
-        Self {
-            lo: centers.lo,
-            scale: BINS as f32 / centers.extent(),
-        }
+        Self { lo: centers.lo, scale: BINS as f32 / centers.extent() }
     }
 
     /// The bin of a centre.
@@ -57,13 +54,7 @@ impl Grid {
 }
 
 impl Bin {
-    const EMPTY: Self = Self {
-        count: 0,
-        bounds: Aabb {
-            lo: Vec3::ZERO,
-            hi: Vec3::ZERO,
-        },
-    };
+    const EMPTY: Self = Self { count: 0, bounds: Aabb { lo: Vec3::ZERO, hi: Vec3::ZERO } };
 
     fn with(&self, other: &Self) -> Self {
         let bounds = match (self.count, other.count) {
@@ -71,17 +62,11 @@ impl Bin {
             (_, 0) => self.bounds,
             _ => self.bounds.union(&other.bounds),
         };
-        Self {
-            count: self.count + other.count,
-            bounds,
-        }
+        Self { count: self.count + other.count, bounds }
     }
 
     fn add(&mut self, bounds: &Aabb<f32>) {
-        *self = self.with(&Self {
-            count: 1,
-            bounds: *bounds,
-        });
+        *self = self.with(&Self { count: 1, bounds: *bounds });
     }
 
     /// Half the surface, in double precision: single would overflow.
@@ -99,10 +84,7 @@ impl Bin {
 /// The cheapest cut, or `None` if none saves a test: then the heuristic says nothing.
 pub(super) fn best_cut(primitives: &[Primitive], grid: &Grid) -> Option<Cut> {
     let bins = fill(primitives, grid);
-    let area = bins[0]
-        .iter()
-        .fold(Bin::EMPTY, |all, bin| all.with(bin))
-        .area();
+    let area = bins[0].iter().fold(Bin::EMPTY, |all, bin| all.with(bin)).area();
     let mut best: Option<Cut> = None;
     for axis in (0..3).filter(|&axis| grid.can_bin(axis)) {
         for (bin, cost) in costs(&bins[axis]) {
@@ -145,14 +127,8 @@ fn fill(primitives: &[Primitive], grid: &Grid) -> Bins {
     if primitives.len() <= CHUNK {
         return fill_chunk(primitives);
     }
-    primitives
-        .par_chunks(CHUNK)
-        .map(fill_chunk)
-        .reduce(empty, |mut a, b| {
-            a.iter_mut()
-                .flatten()
-                .zip(b.iter().flatten())
-                .for_each(|(a, b)| *a = a.with(b));
-            a
-        })
+    primitives.par_chunks(CHUNK).map(fill_chunk).reduce(empty, |mut a, b| {
+        a.iter_mut().flatten().zip(b.iter().flatten()).for_each(|(a, b)| *a = a.with(b));
+        a
+    })
 }

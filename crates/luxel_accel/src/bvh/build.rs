@@ -27,15 +27,9 @@ pub(super) enum Content {
 
 /// Builds the tree and the leaf order; no tree for no boxes.
 pub(super) fn build(boxes: &[Aabb<f32>], options: &BvhOptions) -> (Option<Subtree>, Vec<u32>) {
-    let options = BvhOptions {
-        max_leaf_size: options.max_leaf_size.clamp(1, MAX_LEAF_SIZE),
-        ..*options
-    };
-    let mut primitives: Vec<Primitive> = boxes
-        .par_iter()
-        .enumerate()
-        .map(|(index, bounds)| Primitive::new(index, *bounds))
-        .collect();
+    let options = BvhOptions { max_leaf_size: options.max_leaf_size.clamp(1, MAX_LEAF_SIZE), ..*options };
+    let mut primitives: Vec<Primitive> =
+        boxes.par_iter().enumerate().map(|(index, bounds)| Primitive::new(index, *bounds)).collect();
     let tree = (!primitives.is_empty()).then(|| grow(&mut primitives, 0, 0, &options));
     (tree, primitives.par_iter().map(|p| p.index).collect())
 }
@@ -49,25 +43,14 @@ fn grow(primitives: &mut [Primitive], first: u32, depth: u32, options: &BvhOptio
     let (low, high) = primitives.split_at_mut(middle);
     let mut grow_low = || grow(low, first, depth + 1, options);
     let mut grow_high = || grow(high, first + middle as u32, depth + 1, options);
-    let (low, high) = if count > PARALLEL_COUNT {
-        rayon::join(grow_low, grow_high)
-    } else {
-        (grow_low(), grow_high())
-    };
-    Subtree {
-        bounds: low.bounds.union(&high.bounds),
-        content: Content::Inner(Box::new([low, high])),
-    }
+    let (low, high) =
+        if count > PARALLEL_COUNT { rayon::join(grow_low, grow_high) } else { (grow_low(), grow_high()) };
+    Subtree { bounds: low.bounds.union(&high.bounds), content: Content::Inner(Box::new([low, high])) }
 }
 
 /// A leaf, its primitives in the order of the input.
 fn leaf(primitives: &mut [Primitive], first: u32) -> Subtree {
     primitives.sort_unstable_by_key(|p| p.index);
-    let bounds = primitives
-        .iter()
-        .fold(primitives[0].bounds, |b, p| b.union(&p.bounds));
-    Subtree {
-        bounds,
-        content: Content::Leaf(first, primitives.len() as u32),
-    }
+    let bounds = primitives.iter().fold(primitives[0].bounds, |b, p| b.union(&p.bounds));
+    Subtree { bounds, content: Content::Leaf(first, primitives.len() as u32) }
 }

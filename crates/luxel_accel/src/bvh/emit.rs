@@ -20,12 +20,7 @@ fn emit(tree: &Subtree, nodes: &mut Vec<BvhNode>) {
         Content::Leaf(first, count) => BvhNode::pack_leaf(*first, *count),
         Content::Inner(_) => 0,
     };
-    nodes.push(BvhNode {
-        lo,
-        skip: 0,
-        hi,
-        leaf,
-    });
+    nodes.push(BvhNode { lo, skip: 0, hi, leaf });
     if let Content::Inner(children) = &tree.content {
         children.iter().for_each(|child| emit(child, nodes));
     }

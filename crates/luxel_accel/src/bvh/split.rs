@@ -22,20 +22,12 @@ pub(super) struct Primitive {
 impl Primitive {
     /// The centre is formed so that it does not overflow.
     pub(super) fn new(index: usize, bounds: Aabb<f32>) -> Self {
-        Self {
-            bounds,
-            center: bounds.lo * 0.5 + bounds.hi * 0.5,
-            index: index as u32,
-        }
+        Self { bounds, center: bounds.lo * 0.5 + bounds.hi * 0.5, index: index as u32 }
     }
 }
 
 /// Reorders the primitives and returns where the second half starts, or `None` for a leaf.
-pub(super) fn split(
-    primitives: &mut [Primitive],
-    depth: u32,
-    options: &BvhOptions,
-) -> Option<usize> {
+pub(super) fn split(primitives: &mut [Primitive], depth: u32, options: &BvhOptions) -> Option<usize> {
     let count = primitives.len();
     let may_be_leaf = count <= options.max_leaf_size as usize;
     if count <= 1 {
@@ -62,16 +54,10 @@ fn levels_of_medians(count: usize) -> u32 {
 
 /// The box of the primitives' centres.
 fn centroid_bounds(primitives: &[Primitive]) -> Aabb<f32> {
-    primitives.iter().fold(
-        Aabb {
-            lo: primitives[0].center,
-            hi: primitives[0].center,
-        },
-        |b, p| Aabb {
-            lo: Vector::min(b.lo, p.center),
-            hi: Vector::max(b.hi, p.center),
-        },
-    )
+    primitives.iter().fold(Aabb { lo: primitives[0].center, hi: primitives[0].center }, |b, p| Aabb {
+        lo: Vector::min(b.lo, p.center),
+        hi: Vector::max(b.hi, p.center),
+    })
 }
 
 /// Moves the primitives for which `is_first` holds to the front and returns their number.
@@ -98,9 +84,7 @@ fn split_at_median(primitives: &mut [Primitive]) -> usize {
     };
     let middle = primitives.len() / 2;
     primitives.select_nth_unstable_by(middle, |a, b| {
-        a.center[axis]
-            .total_cmp(&b.center[axis])
-            .then(a.index.cmp(&b.index))
+        a.center[axis].total_cmp(&b.center[axis]).then(a.index.cmp(&b.index))
     });
     middle
 }
@@ -110,15 +94,7 @@ mod tests {
     use super::*;
 
     fn points(centers: impl IntoIterator<Item = f32>) -> Vec<Primitive> {
-        let point = |(i, x)| {
-            Primitive::new(
-                i,
-                Aabb {
-                    lo: Vec3::splat(x),
-                    hi: Vec3::splat(x),
-                },
-            )
-        };
+        let point = |(i, x)| Primitive::new(i, Aabb { lo: Vec3::splat(x), hi: Vec3::splat(x) });
         centers.into_iter().enumerate().map(point).collect()
     }
 
@@ -144,17 +120,11 @@ mod tests {
     fn near_the_depth_bound_cuts_are_medians() {
         let mut primitives = points((0..64).map(|i| if i == 63 { 1e6 } else { i as f32 * 1e-3 }));
         assert_ne!(split(&mut primitives, 0, &BvhOptions::default()), Some(32));
-        assert_eq!(
-            split(&mut primitives, MAX_SAH_DEPTH, &BvhOptions::default()),
-            Some(32)
-        );
+        assert_eq!(split(&mut primitives, MAX_SAH_DEPTH, &BvhOptions::default()), Some(32));
     }
 
     #[test]
     fn median_levels_are_logarithms() {
-        assert_eq!(
-            [1, 2, 3, 4, 5, 8, 9].map(levels_of_medians),
-            [0, 1, 2, 2, 3, 3, 4]
-        );
+        assert_eq!([1, 2, 3, 4, 5, 8, 9].map(levels_of_medians), [0, 1, 2, 2, 3, 3, 4]);
     }
 }

@@ -25,12 +25,7 @@ pub(super) struct Cell {
 impl RootCell {
     /// The cell as that of node 0.
     pub(super) fn cell(self) -> Cell {
-        Cell {
-            center: self.center,
-            half_extent: self.half_extent,
-            depth: 0,
-            root: self,
-        }
+        Cell { center: self.center, half_extent: self.half_extent, depth: 0, root: self }
     }
 
     /// True if a point lies in the cube, its surface included.
@@ -52,19 +47,10 @@ impl Cell {
     pub(super) fn child(&self, octant: u32) -> Self {
         let half_extent = 0.5 * self.half_extent;
         let side = |bit: u32| {
-            if octant >> bit & 1 == 1 {
-                half_extent
-            } else {
-                -half_extent
-            }
+            if octant >> bit & 1 == 1 { half_extent } else { -half_extent }
         };
         let center = self.center + Vec3::new(side(0), side(1), side(2));
-        Self {
-            center,
-            half_extent,
-            depth: self.depth + 1,
-            root: self.root,
-        }
+        Self { center, half_extent, depth: self.depth + 1, root: self.root }
     }
 }
 
@@ -72,17 +58,10 @@ impl Cell {
 mod tests {
     use super::*;
 
-    const ROOT: RootCell = RootCell {
-        center: Vec3::ZERO,
-        half_extent: 4.0,
-    };
+    const ROOT: RootCell = RootCell { center: Vec3::ZERO, half_extent: 4.0 };
 
     fn octant(center: [f32; 3], radius: f32) -> Option<u32> {
-        ROOT.cell().octant_for(&SphereRecord {
-            center,
-            radius,
-            ..Default::default()
-        })
+        ROOT.cell().octant_for(&SphereRecord { center, radius, ..Default::default() })
     }
 
     #[test]
@@ -108,9 +87,6 @@ mod tests {
     #[test]
     fn children_are_the_eighths() {
         let child = ROOT.cell().child(0b101);
-        assert_eq!(
-            (child.center, child.half_extent, child.depth),
-            (Vec3::new(2.0, -2.0, 2.0), 2.0, 1)
-        );
+        assert_eq!((child.center, child.half_extent, child.depth), (Vec3::new(2.0, -2.0, 2.0), 2.0, 1));
     }
 }

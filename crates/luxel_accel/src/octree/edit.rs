@@ -11,12 +11,7 @@ impl SphereOctree {
     ///
     /// # Errors
     /// [`AccelError::SlotTaken`], [`AccelError::BadSphere`].
-    pub fn insert(
-        &mut self,
-        slot: u32,
-        sphere: SphereRecord,
-        revision: u64,
-    ) -> Result<(), AccelError> {
+    pub fn insert(&mut self, slot: u32, sphere: SphereRecord, revision: u64) -> Result<(), AccelError> {
         self.check_free(slot)?;
         check_sphere(slot, sphere.center.into(), sphere.radius)?;
         self.store(slot, sphere, revision);
@@ -39,20 +34,10 @@ impl SphereOctree {
     ///
     /// # Errors
     /// [`AccelError::SlotEmpty`], [`AccelError::BadSphere`].
-    pub fn update(
-        &mut self,
-        slot: u32,
-        center: Vec3,
-        radius: f32,
-        revision: u64,
-    ) -> Result<(), AccelError> {
+    pub fn update(&mut self, slot: u32, center: Vec3, radius: f32, revision: u64) -> Result<(), AccelError> {
         let old = self.occupied(slot)?;
         check_sphere(slot, center, radius)?;
-        let new = SphereRecord {
-            center: center.into(),
-            radius,
-            ..old
-        };
+        let new = SphereRecord { center: center.into(), radius, ..old };
         // Compared as bytes: 0 and −0 are different content.
         if bytemuck::bytes_of(&new) == bytemuck::bytes_of(&old) {
             return Ok(());
@@ -77,15 +62,9 @@ impl SphereOctree {
     ///
     /// # Errors
     /// [`AccelError::SlotEmpty`].
-    pub fn set_material(
-        &mut self,
-        slot: u32,
-        material: u32,
-        revision: u64,
-    ) -> Result<(), AccelError> {
+    pub fn set_material(&mut self, slot: u32, material: u32, revision: u64) -> Result<(), AccelError> {
         let old = self.occupied(slot)?;
-        self.spheres
-            .set(slot as usize, SphereRecord { material, ..old }, revision);
+        self.spheres.set(slot as usize, SphereRecord { material, ..old }, revision);
         Ok(())
     }
 

@@ -8,9 +8,8 @@ impl SphereOctree {
     /// Recomputes a node's box, count and mask from its chain and its children.
     pub(super) fn refit(&mut self, node: u32, revision: u64) {
         let record = *self.node(node);
-        let mut bounds = self.chain(node).fold(Aabb::empty(), |b, slot| {
-            b.union(&sphere_bounds(self.sphere(slot)))
-        });
+        let mut bounds =
+            self.chain(node).fold(Aabb::empty(), |b, slot| b.union(&sphere_bounds(self.sphere(slot))));
         self.work.spheres_touched += u64::from(record.sphere_count);
         self.work.nodes_touched += u64::from(self.child_count(node));
         let (mut count, mut mask) = (record.sphere_count, 0);
@@ -46,8 +45,7 @@ impl SphereOctree {
             let touches = touches_border(&node_bounds(self.node(node)), removed);
             let record = self.node_mut(node, revision);
             record.subtree_count -= 1;
-            let has_empty_block =
-                record.first_child != NONE && record.subtree_count == record.sphere_count;
+            let has_empty_block = record.first_child != NONE && record.subtree_count == record.sphere_count;
             if has_empty_block {
                 self.free_block(node, revision);
             }
@@ -71,11 +69,7 @@ impl SphereOctree {
 
     /// A node's children: eight or none.
     pub(super) fn child_count(&self, node: u32) -> u32 {
-        if self.node(node).first_child == NONE {
-            0
-        } else {
-            8
-        }
+        if self.node(node).first_child == NONE { 0 } else { 8 }
     }
 
     fn path_to_root(&self, node: u32) -> Vec<u32> {
@@ -91,11 +85,7 @@ impl SphereOctree {
         }
         let bit = 1 << (node - self.node(parent).first_child);
         let mask = self.node(parent).child_mask;
-        let new_mask = if self.node(node).subtree_count > 0 {
-            mask | bit
-        } else {
-            mask & !bit
-        };
+        let new_mask = if self.node(node).subtree_count > 0 { mask | bit } else { mask & !bit };
         if new_mask != mask {
             self.node_mut(parent, revision).child_mask = new_mask;
         }

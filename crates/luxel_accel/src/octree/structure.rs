@@ -15,11 +15,7 @@ impl SphereOctree {
                 *self.spheres.get_mut(gap, revision) = FREE_SPHERE;
             }
         }
-        *self.spheres.get_mut(slot, revision) = SphereRecord {
-            next: NONE,
-            node: NONE,
-            ..record
-        };
+        *self.spheres.get_mut(slot, revision) = SphereRecord { next: NONE, node: NONE, ..record };
     }
 
     /// A node to write to.
@@ -56,9 +52,7 @@ impl SphereOctree {
     /// The slots of a node's own spheres.
     pub(super) fn chain(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
         let link = |slot: u32| (slot != NONE).then_some(slot);
-        std::iter::successors(link(self.node(node).first_sphere), move |&slot| {
-            link(self.sphere(slot).next)
-        })
+        std::iter::successors(link(self.node(node).first_sphere), move |&slot| link(self.sphere(slot).next))
     }
 
     /// Subdivides a node without children, and what comes of it, as far as the rule asks. Returns true if it
@@ -66,12 +60,7 @@ impl SphereOctree {
     pub(super) fn split_if_crowded(&mut self, node: u32, cell: &Cell, revision: u64) -> bool {
         self.work.spheres_touched += u64::from(self.node(node).sphere_count);
         let goes_deeper = |&slot: &u32| cell.octant_for(self.sphere(slot)).is_some();
-        if self
-            .chain(node)
-            .filter(goes_deeper)
-            .nth(MIN_SPHERES)
-            .is_none()
-        {
+        if self.chain(node).filter(goes_deeper).nth(MIN_SPHERES).is_none() {
             return false;
         }
         let first_child = self.allocate_block(node, revision);
@@ -95,9 +84,7 @@ impl SphereOctree {
         (record.first_sphere, record.sphere_count) = (NONE, 0);
         // From the tail, because `link` works at the head: chains keep their order.
         for &slot in slots.iter().rev() {
-            let owner = cell
-                .octant_for(self.sphere(slot))
-                .map_or(node, |octant| first_child + octant);
+            let owner = cell.octant_for(self.sphere(slot)).map_or(node, |octant| first_child + octant);
             self.link(owner, slot, revision);
         }
     }
@@ -106,8 +93,7 @@ impl SphereOctree {
     fn allocate_block(&mut self, parent: u32, revision: u64) -> u32 {
         self.work.blocks_allocated += 1;
         let first = self.free_blocks.pop().unwrap_or(self.nodes.len() as u32);
-        self.nodes
-            .write(first as usize, &[empty_node(parent); 8], revision);
+        self.nodes.write(first as usize, &[empty_node(parent); 8], revision);
         self.node_mut(parent, revision).first_child = first;
         first
     }
@@ -116,8 +102,7 @@ impl SphereOctree {
     pub(super) fn free_block(&mut self, parent: u32, revision: u64) {
         self.work.blocks_freed += 1;
         let first = std::mem::replace(&mut self.node_mut(parent, revision).first_child, NONE);
-        self.nodes
-            .write(first as usize, &[empty_node(NONE); 8], revision);
+        self.nodes.write(first as usize, &[empty_node(NONE); 8], revision);
         self.free_blocks.push(first);
     }
 }

@@ -17,11 +17,7 @@ impl Srgb {
     pub(super) fn new() -> Self {
         let decode = |byte: f64| {
             let s = byte / 255.0;
-            let linear = if s <= 0.04045 {
-                s / 12.92
-            } else {
-                ((s + 0.055) / 1.055).powf(2.4)
-            };
+            let linear = if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
             (linear * LINEAR_ONE).round() as u64
         };
         Self {
@@ -46,10 +42,7 @@ impl Sum {
     /// The sum over one leaf, from its packed colour.
     pub(super) fn of_leaf(color: u32, srgb: &Srgb) -> Self {
         let channel = |i: usize| srgb.linear[(color >> (8 * i) & 0xff) as usize];
-        Self {
-            linear: std::array::from_fn(channel),
-            count: 1,
-        }
+        Self { linear: std::array::from_fn(channel), count: 1 }
     }
 
     pub(super) fn add(&mut self, other: &Self) {
@@ -81,9 +74,7 @@ mod tests {
     fn average(colors: &[[u8; 3]], levels: u32) -> [u8; 4] {
         let srgb = Srgb::new();
         let mut sum = Sum::default();
-        colors
-            .iter()
-            .for_each(|c| sum.add(&Sum::of_leaf(leaf_color(*c), &srgb)));
+        colors.iter().for_each(|c| sum.add(&Sum::of_leaf(leaf_color(*c), &srgb)));
         sum.color(levels, &srgb).to_le_bytes()
     }
 

@@ -19,17 +19,9 @@ pub(super) fn nodes(voxels: &[SvoVoxel], levels: u32) -> Vec<SvoNode> {
     for (position, key) in keys.iter().enumerate() {
         let voxel = &voxels[key.index()];
         let leaf = &mut next[levels as usize];
-        pass.nodes[*leaf] = SvoNode {
-            color: leaf_color(voxel.color),
-            material: voxel.material,
-            ..SvoNode::default()
-        };
-        pass.join(
-            levels,
-            *leaf,
-            key.code(),
-            Sum::of_leaf(leaf_color(voxel.color), &pass.srgb),
-        );
+        pass.nodes[*leaf] =
+            SvoNode { color: leaf_color(voxel.color), material: voxel.material, ..SvoNode::default() };
+        pass.join(levels, *leaf, key.code(), Sum::of_leaf(leaf_color(voxel.color), &pass.srgb));
         *leaf += 1;
         let following = keys.get(position + 1).map(|k| k.code());
         for level in (0..levels).rev() {
@@ -54,9 +46,7 @@ fn level_starts(keys: &[Key], levels: u32) -> [usize; MAX_SVO_DEPTH as usize + 1
         // The first level at which the two cells are different ones; so are all below.
         let differing_bits = 64 - (pair[0].code() ^ pair[1].code()).leading_zeros();
         let first = levels + 1 - differing_bits.div_ceil(3);
-        counts[first as usize..]
-            .iter_mut()
-            .for_each(|count| *count += 1);
+        counts[first as usize..].iter_mut().for_each(|count| *count += 1);
     }
     let mut start = 0;
     counts.map(|count| {

@@ -35,8 +35,7 @@ pub(super) fn encode(cell: [u16; 3]) -> u64 {
 
 /// One key per solid cell in Morton order; of several voxels in a cell, the last.
 pub(super) fn sorted_keys(voxels: &[SvoVoxel]) -> Vec<Key> {
-    let key =
-        |(index, voxel): (usize, &SvoVoxel)| Key(encode(voxel.cell) << INDEX_BITS | index as u64);
+    let key = |(index, voxel): (usize, &SvoVoxel)| Key(encode(voxel.cell) << INDEX_BITS | index as u64);
     let mut keys: Vec<Key> = voxels.par_iter().enumerate().map(key).collect();
     keys.par_sort_unstable();
     keys.dedup_by(|later, kept| {
@@ -64,16 +63,8 @@ mod tests {
 
     #[test]
     fn the_last_of_equal_cells_is_kept() {
-        let voxel = |x| SvoVoxel {
-            cell: [x, 0, 0],
-            ..Default::default()
-        };
+        let voxel = |x| SvoVoxel { cell: [x, 0, 0], ..Default::default() };
         let keys = sorted_keys(&[voxel(3), voxel(1), voxel(3), voxel(3)]);
-        assert_eq!(
-            keys.iter()
-                .map(|k| (k.code(), k.index()))
-                .collect::<Vec<_>>(),
-            [(1, 1), (9, 3)]
-        );
+        assert_eq!(keys.iter().map(|k| (k.code(), k.index())).collect::<Vec<_>>(), [(1, 1), (9, 3)]);
     }
 }

@@ -10,40 +10,19 @@ use crate::AccelError;
 const STRUCTURE: &str = "svo";
 
 /// Checks the nodes of a volume and the box of its solid cells.
-pub(super) fn validate(
-    nodes: &[SvoNode],
-    levels: u32,
-    bounds: &Aabb<f32>,
-) -> Result<(), AccelError> {
+pub(super) fn validate(nodes: &[SvoNode], levels: u32, bounds: &Aabb<f32>) -> Result<(), AccelError> {
     if nodes.is_empty() {
-        return AccelError::require(
-            bounds.is_empty(),
-            STRUCTURE,
-            0,
-            "there are no cells, but a box",
-        );
+        return AccelError::require(bounds.is_empty(), STRUCTURE, 0, "there are no cells, but a box");
     }
     AccelError::require(levels <= MAX_SVO_DEPTH, STRUCTURE, 0, "too many levels")?;
-    let mut walk = Walk {
-        nodes,
-        levels,
-        is_met: vec![false; nodes.len()],
-        extremes: None,
-        srgb: Srgb::new(),
-    };
+    let mut walk =
+        Walk { nodes, levels, is_met: vec![false; nodes.len()], extremes: None, srgb: Srgb::new() };
     walk.visit(0, 0, UVec3::ZERO)?;
     if let Some(index) = walk.is_met.iter().position(|met| !met) {
         AccelError::require(false, STRUCTURE, index, "a node is not in the tree")?;
     }
-    let expected = walk
-        .extremes
-        .map(|(lowest, highest)| cell_bounds(lowest, highest));
-    AccelError::require(
-        expected == Some(*bounds),
-        STRUCTURE,
-        0,
-        "the box is not that of the solid cells",
-    )
+    let expected = walk.extremes.map(|(lowest, highest)| cell_bounds(lowest, highest));
+    AccelError::require(expected == Some(*bounds), STRUCTURE, 0, "the box is not that of the solid cells")
 }
 
 struct Walk<'a> {
@@ -60,10 +39,7 @@ impl Walk<'_> {
     fn visit(&mut self, index: usize, level: u32, cell: UVec3) -> Result<Sum, AccelError> {
         let require = |holds, rule| AccelError::require(holds, STRUCTURE, index, rule);
         let node = self.nodes[index];
-        require(
-            !std::mem::replace(&mut self.is_met[index], true),
-            "a node is in two blocks of children",
-        )?;
+        require(!std::mem::replace(&mut self.is_met[index], true), "a node is in two blocks of children")?;
         if level == self.levels {
             require(node.child_mask == 0, "a leaf has children")?;
             require(node.color >> 24 == 255, "a leaf is not solid")?;
@@ -103,56 +79,25 @@ mod tests {
     use crate::{Svo, SvoVoxel, build_svo};
 
     fn svo() -> Svo {
-        let voxel = |i: u16| SvoVoxel {
-            cell: [i % 5, i / 5 % 5, i / 25],
-            color: [i as u8, 90, 200],
-            material: 3,
-        };
-        build_svo(
-            &(0..125).step_by(3).map(voxel).collect::<Vec<_>>(),
-            UVec3::splat(5),
-        )
-        .unwrap()
+        let voxel =
+            |i: u16| SvoVoxel { cell: [i % 5, i / 5 % 5, i / 25], color: [i as u8, 90, 200], material: 3 };
+        build_svo(&(0..125).step_by(3).map(voxel).collect::<Vec<_>>(), UVec3::splat(5)).unwrap()
     }
 
     #[test]
     fn every_damaged_field_is_found() {
         type Damage = fn(&mut Svo);
         let damages: [(Damage, &str); 10] = [
-            (
-                |s| s.nodes[0].color ^= 1,
-                "the colour is not the average below",
-            ),
-            (
-                |s| s.nodes[2].color ^= 1 << 25,
-                "the colour is not the average below",
-            ),
-            (
-                |s| s.nodes[0].child_mask = 0,
-                "an inner node has no children",
-            ),
-            (
-                |s| s.nodes[0].child_mask |= 256,
-                "a mask has more than eight bits",
-            ),
-            (
-                |s| s.nodes[2].first_child = s.nodes[1].first_child,
-                "a node is in two blocks of children",
-            ),
-            (
-                |s| s.nodes[1].first_child = 0,
-                "children lie outside the array or not behind the node",
-            ),
-            (
-                |s| s.nodes[1].first_child = 1 << 30,
-                "children lie outside the array or not behind the node",
-            ),
+            (|s| s.nodes[0].color ^= 1, "the colour is not the average below"),
+            (|s| s.nodes[2].color ^= 1 << 25, "the colour is not the average below"),
+            (|s| s.nodes[0].child_mask = 0, "an inner node has no children"),
+            (|s| s.nodes[0].child_mask |= 256, "a mask has more than eight bits"),
+            (|s| s.nodes[2].first_child = s.nodes[1].first_child, "a node is in two blocks of children"),
+            (|s| s.nodes[1].first_child = 0, "children lie outside the array or not behind the node"),
+            (|s| s.nodes[1].first_child = 1 << 30, "children lie outside the array or not behind the node"),
             (|s| s.levels -= 1, "a leaf has children"),
             (|s| s.levels = 31, "too many levels"),
-            (
-                |s| s.bounds.hi.x += 1.0,
-                "the box is not that of the solid cells",
-            ),
+            (|s| s.bounds.hi.x += 1.0, "the box is not that of the solid cells"),
         ];
         assert_eq!(svo().validate(), Ok(()));
         for (i, (damage, expected)) in damages.into_iter().enumerate() {

@@ -1,14 +1,10 @@
 //! Flat scenes made straight from the builders, and the standing oracle: accelerated equals naive, bit for bit.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 use glam::{DAffine3, UVec3, Vec3};
-use luxel_accel::{
-    BvhOptions, RootCell, SphereOctree, Svo, SvoVoxel, build_mesh, build_svo, build_tlas,
-};
+use luxel_accel::{BvhOptions, RootCell, SphereOctree, Svo, SvoVoxel, build_mesh, build_svo, build_tlas};
 use luxel_cpu::naive::Naive;
 use luxel_cpu::{Exclusion, Hit, traverse};
-use luxel_flat::{
-    Counters, FlatScene, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SphereRecord,
-};
+use luxel_flat::{Counters, FlatScene, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SphereRecord};
 use luxel_geom::{Aabb, Affine, Ray, Real};
 use luxel_testkit::TestMesh;
 use rayon::prelude::*;
@@ -22,19 +18,8 @@ pub(crate) struct SceneBuilder {
 
 impl SceneBuilder {
     /// Adds a mesh; the primitive ids are `ids`.
-    pub(crate) fn mesh_with_ids(
-        mut self,
-        mesh: &TestMesh,
-        ids: &[u32],
-        world_from_object: DAffine3,
-    ) -> Self {
-        let built = build_mesh(
-            &mesh.positions,
-            &mesh.triangles,
-            ids,
-            &BvhOptions::default(),
-        )
-        .unwrap();
+    pub(crate) fn mesh_with_ids(mut self, mesh: &TestMesh, ids: &[u32], world_from_object: DAffine3) -> Self {
+        let built = build_mesh(&mesh.positions, &mesh.triangles, ids, &BvhOptions::default()).unwrap();
         built.validate().unwrap();
         let instance = Instance {
             kind: KIND_MESH,
@@ -44,12 +29,8 @@ impl SceneBuilder {
             primitive_count: built.triangles.len() as u32,
             ..Instance::default()
         };
-        self.flat
-            .bvh_nodes
-            .write(self.flat.bvh_nodes.len(), &built.nodes, 1);
-        self.flat
-            .triangles
-            .write(self.flat.triangles.len(), &built.triangles, 1);
+        self.flat.bvh_nodes.write(self.flat.bvh_nodes.len(), &built.nodes, 1);
+        self.flat.triangles.write(self.flat.triangles.len(), &built.triangles, 1);
         self.place(instance, world_from_object, &built.bounds)
     }
 
@@ -72,11 +53,7 @@ impl SceneBuilder {
         self.flat.octree_nodes = octree.nodes().clone();
         self.flat.spheres = octree.spheres().clone();
         let node_count = octree.nodes().len() as u32;
-        let instance = Instance {
-            kind: KIND_SPHERES,
-            node_count,
-            ..Instance::default()
-        };
+        let instance = Instance { kind: KIND_SPHERES, node_count, ..Instance::default() };
         self.place(instance, DAffine3::IDENTITY, &octree.bounds())
     }
 
@@ -90,40 +67,24 @@ impl SceneBuilder {
             levels: svo.levels,
             ..Instance::default()
         };
-        self.flat
-            .svo_nodes
-            .write(self.flat.svo_nodes.len(), &svo.nodes, 1);
+        self.flat.svo_nodes.write(self.flat.svo_nodes.len(), &svo.nodes, 1);
         self.place(instance, world_from_object, &svo.bounds)
     }
 
     /// The scene with its TLAS; instances without nodes are free slots.
     pub(crate) fn build(mut self) -> FlatScene {
-        let live = self
-            .instances
-            .iter()
-            .enumerate()
-            .filter(|(_, i)| i.node_count > 0);
-        let bounds = |i: &Instance| Aabb {
-            lo: i.lo.into(),
-            hi: i.hi.into(),
-        };
+        let live = self.instances.iter().enumerate().filter(|(_, i)| i.node_count > 0);
+        let bounds = |i: &Instance| Aabb { lo: i.lo.into(), hi: i.hi.into() };
         let boxes: Vec<_> = live.map(|(slot, i)| (slot as u32, bounds(i))).collect();
         let tlas = build_tlas(&boxes).unwrap();
         self.flat.params.tlas_first = self.flat.bvh_nodes.len() as u32;
         self.flat.params.tlas_count = tlas.len() as u32;
-        self.flat
-            .bvh_nodes
-            .write(self.flat.bvh_nodes.len(), &tlas, 1);
+        self.flat.bvh_nodes.write(self.flat.bvh_nodes.len(), &tlas, 1);
         self.flat.instances.write(0, &self.instances, 1);
         self.flat
     }
 
-    fn place(
-        mut self,
-        instance: Instance,
-        world_from_object: DAffine3,
-        bounds: &Aabb<f32>,
-    ) -> Self {
+    fn place(mut self, instance: Instance, world_from_object: DAffine3, bounds: &Aabb<f32>) -> Self {
         let forward = Affine::<f32>::from_daffine(&world_from_object);
         let bounds = forward.bounds(bounds);
         self.instances.push(Instance {
@@ -140,30 +101,18 @@ impl SceneBuilder {
 
 /// A scene of one mesh.
 pub(crate) fn mesh_scene(mesh: &TestMesh) -> FlatScene {
-    SceneBuilder::default()
-        .mesh(mesh, DAffine3::IDENTITY)
-        .build()
+    SceneBuilder::default().mesh(mesh, DAffine3::IDENTITY).build()
 }
 
 /// A scene of spheres; the root cell is centred at the origin.
 pub(crate) fn sphere_scene(half_extent: f32, spheres: &[SphereRecord]) -> FlatScene {
-    SceneBuilder::default()
-        .spheres(
-            RootCell {
-                center: Vec3::ZERO,
-                half_extent,
-            },
-            spheres,
-        )
-        .build()
+    SceneBuilder::default().spheres(RootCell { center: Vec3::ZERO, half_extent }, spheres).build()
 }
 
 /// A scene of one volume of `edge³` cells, its lowest corner at `corner`.
 pub(crate) fn volume_scene(edge: u32, voxels: &[SvoVoxel], corner: Vec3) -> FlatScene {
     let svo = build_svo(voxels, UVec3::splat(edge)).unwrap();
-    SceneBuilder::default()
-        .volume(&svo, DAffine3::from_translation(corner.as_dvec3()))
-        .build()
+    SceneBuilder::default().volume(&svo, DAffine3::from_translation(corner.as_dvec3())).build()
 }
 
 /// The closest hit by the structures.
@@ -184,45 +133,33 @@ pub(crate) fn assert_equals_naive_excluding(
     rays: &[Ray<f32>],
     exclusion: impl Fn(usize) -> Exclusion + Sync,
 ) -> usize {
+    let differences = differences(scene, rays, exclusion);
+    let some = &differences[..differences.len().min(3)];
+    assert!(some.is_empty(), "{} of {} rays differ: {}", differences.len(), rays.len(), some.join("\n"));
+    rays.par_iter().filter(|ray| trace(scene, ray).is_some()).count()
+}
+
+/// A text for each ray for which structures and exhaustive search differ in any bit.
+pub(crate) fn differences(
+    scene: &FlatScene,
+    rays: &[Ray<f32>],
+    exclusion: impl Fn(usize) -> Exclusion + Sync,
+) -> Vec<String> {
     let naive = Naive::new(scene);
-    let differences: Vec<String> = (rays.par_iter().enumerate())
-        .filter_map(|(i, ray)| {
-            let fast = traverse::intersect(scene, ray, &exclusion(i), &mut Counters::default());
-            let slow = naive.intersect(ray, &exclusion(i));
-            (bits(&fast) != bits(&slow))
-                .then(|| format!("ray {i}: {ray:?}\n  fast {fast:?}\n  naive {slow:?}"))
-        })
-        .collect();
-    assert!(
-        differences.is_empty(),
-        "{} of {} rays differ; the first: {}",
-        differences.len(),
-        rays.len(),
-        differences[0]
-    );
-    rays.par_iter()
-        .filter(|ray| trace(scene, ray).is_some())
-        .count()
+    let compare = |(i, ray): (usize, &Ray<f32>)| {
+        let fast = traverse::intersect(scene, ray, &exclusion(i), &mut Counters::default());
+        let slow = naive.intersect(ray, &exclusion(i));
+        (bits(&fast) != bits(&slow)).then(|| format!("ray {i}: {ray:?}\n  fast {fast:?}\n  naive {slow:?}"))
+    };
+    rays.par_iter().enumerate().filter_map(compare).collect()
 }
 
 /// Everything that a hit says, as bits.
 pub(crate) fn bits(hit: &Option<Hit<f32>>) -> Option<[u32; 8]> {
     hit.map(|h| {
         let on = h.on;
-        assert!(
-            on.t.is_finite() && on.uv.iter().all(|x| x.is_finite()),
-            "{h:?}"
-        );
+        assert!(on.t.is_finite() && on.uv.iter().all(|x| x.is_finite()), "{h:?}");
         let [u, v] = on.uv.map(f32::to_bits);
-        [
-            h.instance,
-            h.instance_id,
-            on.t.to_bits(),
-            u,
-            v,
-            on.slot,
-            on.primitive,
-            on.material,
-        ]
+        [h.instance, h.instance_id, on.t.to_bits(), u, v, on.slot, on.primitive, on.material]
     })
 }

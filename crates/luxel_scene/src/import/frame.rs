@@ -121,12 +121,12 @@ fn set_the_stage(world: &mut World, bounds: Bounds) {
         Sphere {
             radius: 1.7 * radius,
         },
-        Material::lamp(Vec3::new(1.0, 0.93, 0.82) * 7.0),
+        Material::lamp(Vec3::new(1.0, 0.92, 0.80) * 4.2),
     );
     spawn(world, lamp);
     world.insert_resource(Environment::Gradient {
-        zenith: Vec3::new(0.40, 0.46, 0.56),
-        horizon: Vec3::new(0.66, 0.68, 0.72),
+        zenith: Vec3::new(0.22, 0.30, 0.46),
+        horizon: Vec3::new(0.56, 0.60, 0.68),
         ground: Vec3::new(0.20, 0.19, 0.18),
     });
     let settings = *world.get_resource_or_init::<RenderSettings>();
@@ -152,7 +152,7 @@ fn spawn_ground(world: &mut World, bounds: Bounds) {
         Name("ground".to_owned()),
         transform,
         MeshInstance { mesh },
-        Material::lambert(Vec3::splat(0.42)),
+        Material::lambert(Vec3::new(0.30, 0.31, 0.33)),
     );
     spawn(world, ground);
 }

@@ -1,0 +1,47 @@
+//! Every structure that bake keeps, checked by the rooms that built it.
+use bevy_ecs::prelude::World;
+use luxel_accel::{MeshBvh, Svo, validate_tlas};
+use luxel_flat::BvhNode;
+use luxel_geom::Aabb;
+use luxel_scene::{MeshAsset, VolumeAsset};
+
+use crate::BakeError;
+use crate::assets::Built;
+use crate::cloud::Cloud;
+use crate::store::Heaps;
+use crate::tlas::{Tlas, live_instances};
+
+/// Checks the octree, the TLAS, and the structure of every asset in use.
+pub(crate) fn validate(world: &World) -> Result<(), BakeError> {
+    let (Some(heaps), Some(cloud), Some(tlas)) =
+        (world.get_resource::<Heaps>(), world.get_resource::<Cloud>(), world.get_resource::<Tlas>())
+    else {
+        return Ok(());
+    };
+    cloud.octree().validate()?;
+    let nodes: &[BvhNode] = &heaps.bvh_nodes.heap.as_slice()[tlas.nodes().range()];
+    validate_tlas(nodes, &live_instances(heaps))?;
+    validate_meshes(world, heaps)?;
+    validate_volumes(world, heaps)
+}
+
+fn validate_meshes(world: &World, heaps: &Heaps) -> Result<(), BakeError> {
+    for (_, _, mesh) in world.get_resource::<Built<MeshAsset>>().iter().flat_map(|built| built.iter()) {
+        let bvh = MeshBvh {
+            nodes: heaps.bvh_nodes.heap.as_slice()[mesh.nodes.range()].to_vec(),
+            triangles: heaps.triangles.heap.as_slice()[mesh.triangles.range()].to_vec(),
+            bounds: mesh.bounds,
+        };
+        bvh.validate()?;
+    }
+    Ok(())
+}
+
+fn validate_volumes(world: &World, heaps: &Heaps) -> Result<(), BakeError> {
+    for (_, _, volume) in world.get_resource::<Built<VolumeAsset>>().iter().flat_map(|built| built.iter()) {
+        let bounds: Aabb<f32> = volume.bounds;
+        let nodes = heaps.svo_nodes.heap.as_slice()[volume.nodes.range()].to_vec();
+        Svo { nodes, levels: volume.levels, bounds }.validate()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,253 @@
+//! The command line as data: commands, options, their help.
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use luxel_engine::output::Precision;
+use luxel_engine::{AovKind, BackendChoice, ToneMap, View};
+
+use crate::values;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done (a render that Ctrl-C stopped counts as done: its picture is written)
+  1  a comparison exceeded its limit
+  2  bad usage or bad input
+  3  the machine cannot do it
+An error is one line on stderr. LUXEL_LOG sets what is logged there (error, warn, info, debug, or a filter).";
+
+macro_rules! after_help {
+    ($examples:literal) => {
+        concat!(
+            "Examples:\n",
+            $examples,
+            "\n\nExit codes: 0 done, 1 comparison failed, 2 bad usage or input, 3 the machine cannot do it."
+        )
+    };
+}
+
+/// A path tracer for spheres, triangle meshes and voxel volumes in one scene.
+///
+/// Without a command: renders the showcase scene for about a minute to showcase.png in the current folder.
+#[derive(Parser)]
+#[command(name = "luxel", version, after_help = EXIT_CODES)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene (.ron) or a model (.obj, .vox) to a picture
+    ///
+    /// A model is framed by a camera of its own, on a ground under a sky.
+    ///
+    /// Stops at the first limit that is reached of --spp, --time and --error; without any, at the scene's samples per
+    /// pixel. Ctrl-C stops, writes what there is, says so and exits with 0; a second Ctrl-C ends the program at once
+    /// (130) without a picture.
+    Render(RenderArgs),
+    /// Say what a scene holds, costs and calls for
+    ///
+    /// Prints counts, memory per heap, the depths of the structures, features in use and left out with the reason
+    /// for each, what import dropped, and warnings.
+    Info(InfoArgs),
+    /// Show the passes that a scene would run, and why
+    ///
+    /// Prints the passes of the render graph in order, whether each would run for this scene, and why.
+    Graph(GraphArgs),
+    /// Measure how far picture B is from the reference A
+    ///
+    /// Prints RMSE, relMSE, PSNR, SSIM and FLIP of two PNG or two EXR pictures of one size. A limit that is exceeded,
+    /// or whose metric does not exist for the pair, makes the exit code 1.
+    Compare(CompareArgs),
+    /// Say what this machine offers and what a render would use
+    ///
+    /// Prints the graphics adapters, the backend that auto takes and why, and what the best adapter's driver does to
+    /// floating-point numbers.
+    Doctor(DoctorArgs),
+}
+
+/// Options of `luxel render`.
+#[derive(Args)]
+#[command(after_help = after_help!("  \
+  luxel render assets/showcase.ron
+  luxel render bunny.obj -o bunny.png --size 640x480 --spp 128
+  luxel render scene.ron -o scene.exr --aov albedo,normal,depth --error 2%
+  luxel render scene.ron -o heat.png --view steps --backend gpu --json"))]
+pub(crate) struct RenderArgs {
+    /// Scene (.ron) or model (.obj, .vox)
+    pub(crate) file: PathBuf,
+
+    /// Picture to write: .png (tone mapped, sRGB) or .exr (linear); FILE's name with .png in the current folder if not given
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Width and height in pixels [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub(crate) size: Option<(u32, u32)>,
+
+    /// Where to trace; auto takes a hardware GPU if there is one, else the CPU
+    #[arg(long, default_value = "auto", value_parser = values::named(vec![
+        ("auto", BackendChoice::Auto), ("gpu", BackendChoice::Gpu), ("cpu", BackendChoice::Cpu),
+    ]))]
+    pub(crate) backend: BackendChoice,
+
+    /// Stop at this many samples per pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) spp: Option<u32>,
+
+    /// Stop after this many seconds of tracing
+    #[arg(long, value_name = "SECS", value_parser = values::positive)]
+    pub(crate) time: Option<f64>,
+
+    /// Stop when the estimated relative error of the picture is this small, such as 2%
+    #[arg(long, value_name = "PERCENT", value_parser = values::percent)]
+    pub(crate) error: Option<f64>,
+
+    /// Seed of the random numbers; equal seeds give equal pictures [default: the scene's]
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u32>,
+
+    /// How often light may scatter after the first hit [default: the scene's]
+    #[arg(long, value_name = "N")]
+    pub(crate) max_depth: Option<u32>,
+
+    /// Name of the camera to look through [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) camera: Option<String>,
+
+    /// Outputs beside the picture, separated by commas: layers of an EXR, files OUT.NAME.png beside a PNG
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = values::named(
+        AovKind::ALL.iter().map(|kind| (kind.name(), *kind)).collect(),
+    ))]
+    pub(crate) aov: Vec<AovKind>,
+
+    /// What a PNG shows: the path-traced picture, a first-hit output, or the work per camera ray (steps)
+    #[arg(long, value_name = "MODE", default_value = View::PathTraced.name(), value_parser = values::named(
+        View::ALL.iter().map(|view| (view.name(), *view)).collect(),
+    ))]
+    pub(crate) view: View,
+
+    /// Curve from radiance to display, for PNG [default: the scene's]
+    #[arg(long, value_name = "CURVE", value_parser = values::named(
+        ToneMap::ALL.iter().map(|curve| (curve.name(), *curve)).collect(),
+    ))]
+    pub(crate) tone_map: Option<ToneMap>,
+
+    /// Brightness in stops, for PNG: each doubles it [default: the scene's]
+    #[arg(long, value_name = "STOPS", value_parser = values::finite, allow_negative_numbers = true)]
+    pub(crate) exposure: Option<f32>,
+
+    /// How an EXR keeps colours
+    #[arg(long, value_name = "BITS", default_value = "half", value_parser = values::named(vec![
+        ("half", Precision::Half), ("float", Precision::Float),
+    ]))]
+    pub(crate) exr_precision: Precision,
+
+    /// Print one JSON object (times, rays per second, counters, files) instead of a line
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `luxel info`.
+#[derive(Args)]
+#[command(after_help = after_help!("  luxel info assets/showcase.ron\n  luxel info bunny.obj --json"))]
+pub(crate) struct InfoArgs {
+    /// Scene (.ron) or model (.obj, .vox)
+    pub(crate) file: PathBuf,
+
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `luxel graph`.
+#[derive(Args)]
+#[command(after_help = after_help!("  luxel graph assets/showcase.ron\n  luxel graph assets/empty.ron --aov --json"))]
+pub(crate) struct GraphArgs {
+    /// Scene (.ron) or model (.obj, .vox)
+    pub(crate) file: PathBuf,
+
+    /// As if first-hit outputs were asked for
+    #[arg(long)]
+    pub(crate) aov: bool,
+
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `luxel compare`.
+#[derive(Args)]
+#[command(after_help = after_help!("  luxel compare reference.exr test.exr\n  luxel compare a.png b.png --max-flip 0.05 --json"))]
+pub(crate) struct CompareArgs {
+    /// Reference picture (.png or .exr)
+    pub(crate) a: PathBuf,
+
+    /// Picture to judge, of the same kind and size
+    pub(crate) b: PathBuf,
+
+    /// Largest root mean square error of display values, 0 to 1
+    #[arg(long, value_name = "X", value_parser = values::limit)]
+    pub(crate) max_rmse: Option<f64>,
+
+    /// Largest relative mean square error of linear values (EXR only)
+    #[arg(long, value_name = "X", value_parser = values::limit)]
+    pub(crate) max_relmse: Option<f64>,
+
+    /// Smallest peak signal-to-noise ratio, decibels
+    #[arg(long, value_name = "X", value_parser = values::limit)]
+    pub(crate) min_psnr: Option<f64>,
+
+    /// Smallest structural similarity, 1 when equal
+    #[arg(long, value_name = "X", value_parser = values::limit)]
+    pub(crate) min_ssim: Option<f64>,
+
+    /// Largest mean FLIP difference, 0 when equal
+    #[arg(long, value_name = "X", value_parser = values::limit)]
+    pub(crate) max_flip: Option<f64>,
+
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `luxel doctor`.
+#[derive(Args)]
+#[command(after_help = after_help!("  luxel doctor\n  luxel doctor --json"))]
+pub(crate) struct DoctorArgs {
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_shows_examples_and_exit_codes() {
+        for command in Cli::command().get_subcommands_mut() {
+            let help = command.render_long_help().to_string();
+            assert!(help.contains("Examples:") && help.contains("Exit codes: 0 done"), "{help}");
+        }
+    }
+
+    #[test]
+    fn options_are_read() {
+        let line =
+            "luxel render a.ron -o b.exr --size 8x4 --error 2% --aov depth,ids --exposure -1 --tone-map agx";
+        let Some(Command::Render(args)) = Cli::try_parse_from(line.split(' ')).unwrap().command else {
+            panic!()
+        };
+        assert_eq!((args.size, args.error, args.exposure), (Some((8, 4)), Some(0.02), Some(-1.0)));
+        assert_eq!(args.aov, [AovKind::Depth, AovKind::Ids]);
+        assert_eq!((args.tone_map, args.view), (Some(ToneMap::AgX), View::PathTraced));
+    }
+}

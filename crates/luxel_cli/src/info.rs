@@ -1,0 +1,106 @@
+//! `luxel info`: what a scene holds, what it costs, which features it calls for, and what was left out.
+use std::fmt::Write;
+
+use luxel_engine::info::SceneInfo;
+use luxel_engine::{Engine, ExitCode};
+
+use crate::args::InfoArgs;
+use crate::error::CliError;
+use crate::reply;
+
+/// Describes a scene.
+pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
+    let info = Engine::load(&args.file)?.info()?;
+    if args.json {
+        reply::print_json(&info)?;
+    } else {
+        reply::print_text(&text(&info))?;
+    }
+    Ok(ExitCode::Done)
+}
+
+fn text(info: &SceneInfo) -> String {
+    let mut sections = vec![head(info), structures(info), memory(info), features(info)];
+    sections.push(lines("dropped", &info.dropped));
+    let warnings: Vec<String> = info.warnings.iter().chain(&info.baked.warnings).cloned().collect();
+    sections.push(lines("warnings", &warnings));
+    sections.join("\n")
+}
+
+fn head(info: &SceneInfo) -> String {
+    let baked = &info.baked;
+    format!(
+        "{}  hash {}\nloaded in {:.3} s, built in {:.3} s\n\ncounts\n  {} spheres\n  {} mesh instances with {} triangles\n  \
+         {} voxel volumes\n  {} materials\n",
+        info.scene,
+        info.scene_hash,
+        info.load_secs,
+        info.bake_secs,
+        baked.spheres,
+        baked.mesh_instances,
+        baked.instanced_triangles,
+        baked.volume_instances,
+        baked.materials
+    )
+}
+
+fn structures(info: &SceneInfo) -> String {
+    let baked = &info.baked;
+    let mut text = format!(
+        "structures\n  TLAS depth {}\n  sphere octree depth {}\n",
+        baked.tlas_depth, baked.octree_depth
+    );
+    for mesh in &baked.meshes {
+        let (asset, triangles, nodes, depth) = (mesh.asset, mesh.triangles, mesh.nodes, mesh.depth);
+        put(
+            &mut text,
+            format_args!("  mesh {asset}: BVH of {triangles} triangles, {nodes} nodes, depth {depth}"),
+        );
+    }
+    for volume in &baked.volumes {
+        let (asset, voxels, nodes, levels) = (volume.asset, volume.voxels, volume.nodes, volume.levels);
+        let materials = volume.materials;
+        put(
+            &mut text,
+            format_args!(
+                "  volume {asset}: octree of {voxels} voxels, {nodes} nodes, {levels} levels, {materials} materials"
+            ),
+        );
+    }
+    text
+}
+
+fn memory(info: &SceneInfo) -> String {
+    let heaps = &info.baked.bytes;
+    let width = heaps.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max("total".len());
+    let total = heaps.iter().map(|(_, count)| count).sum();
+    let mut text = "memory\n".to_owned();
+    for (name, count) in heaps.iter().copied().chain([("total", total)]) {
+        put(&mut text, format_args!("  {name:width$}  {:>10}", reply::bytes(count)));
+    }
+    text
+}
+
+fn features(info: &SceneInfo) -> String {
+    let width = info.features.iter().map(|feature| feature.name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for (title, used) in [("features in use", true), ("features left out", false)] {
+        put(&mut text, format_args!("{title}"));
+        for feature in info.features.iter().filter(|feature| feature.used == used) {
+            put(&mut text, format_args!("  {:width$}  because {}", feature.name, feature.because));
+        }
+    }
+    text
+}
+
+fn lines(title: &str, of: &[String]) -> String {
+    if of.is_empty() {
+        return format!("{title}: none");
+    }
+    of.iter().fold(title.to_owned(), |text, line| text + "\n  " + line)
+}
+
+/// Adds a line; a `String` takes all that it is given.
+fn put(text: &mut String, line: std::fmt::Arguments<'_>) {
+    _ = writeln!(text, "{line}");
+}

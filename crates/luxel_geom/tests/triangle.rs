@@ -1,0 +1,201 @@
+//! The triangle kernel by itself: watertight, right at its ends, and left without being met again
+//! (robustness.md T01–T03, T11–T14, F01).
+use glam::{DVec3, Vec3};
+use luxel_geom::{Exclude, Ray, SlabRay, Vector, rng, spawn, triangle};
+use luxel_testkit::meshes::{bumpy_sphere, zero_area};
+use luxel_testkit::{Random, TestMesh};
+
+/// The mesh of pbrt's watertightness test: 420 triangles around the origin, each vertex at a radius of its own.
+fn closed_mesh() -> TestMesh {
+    bumpy_sphere(15, 15).map(|p| {
+        let [word, ..] = rng::pcg4d([p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), 0]);
+        p * (1.0 + 5.0 * rng::uniform::<f32>(word))
+    })
+}
+
+fn is_hit(triangles: &[[Vec3; 3]], ray: &Ray<f32>) -> bool {
+    let ray = SlabRay::new(ray);
+    triangles.iter().any(|v| triangle::intersect(&ray, v, Exclude::Nothing).is_some())
+}
+
+/// Möller and Trumbore 1997: fast, and not watertight.
+fn moller_trumbore_hits(v: &[Vec3; 3], ray: &Ray<f32>) -> bool {
+    let (e1, e2, s) = (v[1] - v[0], v[2] - v[0], ray.origin - v[0]);
+    let p = ray.direction.cross(e2);
+    let inv_det = 1.0 / p.dot(e1);
+    let q = s.cross(e1);
+    let (u, w) = (s.dot(p) * inv_det, ray.direction.dot(q) * inv_det);
+    u >= 0.0 && w >= 0.0 && u + w <= 1.0 && e2.dot(q) * inv_det > 0.0
+}
+
+/// Rays from near the middle of a closed mesh to its vertices and to points of its edges, one after the other.
+fn rays_to_seams(mesh: &TestMesh, seed: u32, count: u32, middle: Vec3, reach: f32) -> Vec<Ray<f32>> {
+    let mut random = Random::new(seed);
+    let triangle_count = mesh.triangles.len() as u32;
+    (0..count)
+        .map(|i| {
+            let [a, b, _] = mesh.vertices(random.below(triangle_count) as usize);
+            let along = if i % 2 == 0 { 0.0 } else { random.uniform() };
+            let origin = middle + random.point(reach);
+            Ray::new(origin, a + (b - a) * along - origin)
+        })
+        .collect()
+}
+
+fn misses(mesh: &TestMesh, rays: &[Ray<f32>]) -> usize {
+    let triangles: Vec<_> = (0..mesh.triangles.len()).map(|i| mesh.vertices(i)).collect();
+    rays.iter().filter(|ray| !is_hit(&triangles, ray)).count()
+}
+
+#[test]
+fn t01_t02_no_ray_slips_through_a_vertex_or_edge() {
+    let mesh = closed_mesh();
+    assert_eq!(mesh.triangles.len(), 420);
+    assert_eq!(misses(&mesh, &rays_to_seams(&mesh, 1, 1_000_000, Vec3::ZERO, 0.25)), 0);
+}
+
+#[test]
+fn negative_control_another_test_lets_rays_through() {
+    let mesh = closed_mesh();
+    let rays = rays_to_seams(&mesh, 1, 20_000, Vec3::ZERO, 0.25);
+    let meets = |ray: &Ray<f32>| (0..420).any(|i| moller_trumbore_hits(&mesh.vertices(i), ray));
+    let missed = rays.iter().filter(|ray| !meets(ray)).count();
+    assert!(missed > 100, "the rays are too easy: {missed}");
+}
+
+#[test]
+fn t03_no_ray_slips_through_far_away_or_at_any_scale() {
+    for offset in [Vec3::new(148_376.0, 1234.0, -223_423.0), Vec3::splat(1e4)] {
+        let mesh = closed_mesh().map(|p| p + offset);
+        assert_eq!(misses(&mesh, &rays_to_seams(&mesh, 2, 50_000, offset, 0.25)), 0, "{offset}");
+    }
+    for scale in [1e-6, 1e-3, 1e6] {
+        let mesh = closed_mesh().map(|p| p * scale);
+        let rays = rays_to_seams(&mesh, 3, 50_000, Vec3::ZERO, 0.25 * scale);
+        assert_eq!(misses(&mesh, &rays), 0, "{scale}");
+    }
+}
+
+#[test]
+fn t11_the_interval_is_open_below_and_closed_above() {
+    let mut random = Random::new(11);
+    let mut hits = 0;
+    for _ in 0..20_000 {
+        let v = [(); 3].map(|()| random.point(1.0));
+        let ray: Ray<f32> = Ray::new(random.point(4.0), random.direction());
+        let between = |t_min, t_max| {
+            let ray = SlabRay::new(&Ray { t_min, t_max, ..ray });
+            triangle::intersect(&ray, &v, Exclude::Nothing)
+        };
+        let Some(hit) = between(0.0, 100.0) else { continue };
+        hits += 1;
+        let t = hit.t;
+        assert_eq!(between(0.0, t), Some(hit));
+        assert_eq!(between(0.0, t.next_down()), None);
+        assert_eq!(between(t.next_down(), 100.0), Some(hit));
+        assert_eq!(between(t, 100.0), None);
+        assert_eq!(between(t.next_up(), 100.0), None);
+    }
+    assert!(hits > 200, "{hits}");
+}
+
+#[test]
+fn t12_winding_and_first_vertex_change_no_bit_of_t() {
+    let mut random = Random::new(12);
+    let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+    for _ in 0..100_000 {
+        let v = [(); 3].map(|()| random.point(1.0));
+        let origin = random.point(4.0);
+        let ray = SlabRay::new(&Ray::<f32>::new(origin, 0.3 * (v[0] + v[1] + v[2]) - origin));
+        let hits = orders.map(|order| triangle::intersect(&ray, &order.map(|i| v[i]), Exclude::Nothing));
+        assert!(hits.iter().all(|hit| hit.is_some() == hits[0].is_some()), "{hits:?}");
+        let parameters = hits.map(|hit| hit.map_or(0.0, |hit| hit.t));
+        let spread = parameters.iter().fold(0f32, |most, t| most.max((t - parameters[0]).abs()));
+        assert!(spread <= 4.0 * f32::EPSILON * parameters[0], "{parameters:?}");
+    }
+}
+
+/// The exact verdict: on which side of each edge the ray's line passes. Positive if inside.
+fn exact_side(v: &[Vec3; 3], ray: &Ray<f32>) -> f64 {
+    let coordinate = |p: DVec3| robust::Coord3D { x: p.x, y: p.y, z: p.z };
+    let (from, to) = (ray.origin.as_dvec3(), (ray.origin.as_dvec3() + ray.direction.as_dvec3()));
+    let side = |a: Vec3, b: Vec3| {
+        let [a, b] = [a, b].map(|p| coordinate(p.as_dvec3()));
+        robust::orient3d(coordinate(from), coordinate(to), a, b)
+    };
+    let sides = [side(v[0], v[1]), side(v[1], v[2]), side(v[2], v[0])];
+    let all = |sign: f64| sides.iter().fold(f64::MAX, |least, s| least.min(s * sign));
+    all(1.0).max(all(-1.0))
+}
+
+#[test]
+fn t13_needles_are_hit_wherever_the_exact_answer_is_inside() {
+    let mut random = Random::new(13);
+    let needle = [Vec3::ZERO, Vec3::new(1e4, 1e-3, 0.0), Vec3::new(1e4, 2e-3, 0.0)];
+    let (mut inside, mut outside) = (0, 0);
+    for _ in 0..100_000 {
+        let (u, w) = (random.uniform(), random.between(-0.5, 1.5));
+        let target = u * (needle[1] * (1.0 - w) + needle[2] * w);
+        let origin = target + Vec3::Z * random.log_between(1e-2, 1e2);
+        let ray: Ray<f32> = Ray::new(origin, target - origin);
+        let hit = triangle::intersect(&SlabRay::new(&ray), &needle, Exclude::Nothing);
+        if exact_side(&needle, &ray) > 0.0 {
+            inside += 1;
+            assert!(hit.is_some(), "{ray:?}");
+        } else if !(-0.25..=1.25).contains(&w) {
+            outside += u32::from(hit.is_none());
+        }
+    }
+    assert!(inside > 30_000 && outside > 10_000, "{inside} {outside}");
+}
+
+#[test]
+fn t14_triangles_without_area_are_never_hit() {
+    let mut random = Random::new(14);
+    let mesh = zero_area(14, 3000);
+    for (i, k) in (0..3000).flat_map(|i| (0..20).map(move |k| (i, k))) {
+        let v = mesh.vertices(i);
+        let origin = random.point(4.0);
+        let target = if k % 2 == 0 { v[k % 3] } else { v[0] + (v[2] - v[0]) * random.uniform() };
+        let ray: Ray<f32> = Ray::new(origin, target - origin);
+        let hit = triangle::intersect(&SlabRay::new(&ray), &v, Exclude::Nothing);
+        let is_exact = i % 3 != 2;
+        // A middle point is rounded: such a "line" is a triangle with an area of a rounding.
+        assert!(hit.is_none_or(|hit| !is_exact && hit.t.is_finite()), "{v:?} {hit:?}");
+    }
+}
+
+/// F01: a ray that leaves a hit point of a random triangle, to one side or the other.
+fn spawned(random: &mut Random, v: &[Vec3; 3], grazing: bool) -> (Ray<f32>, f32) {
+    let (mut u, mut w) = (random.uniform(), random.uniform());
+    if u + w > 1.0 {
+        (u, w) = (1.0 - u, 1.0 - w);
+    }
+    let (point, error) = triangle::point::<f32>(v, u, w);
+    let normal = triangle::area_normal::<f32>(v).normalized();
+    let any = random.direction();
+    let height = if grazing { random.log_between(1e-3, 1e-2) } else { 1.0 };
+    let direction = (any - normal * any.dot(normal)).normalized() + normal * (height * any.dot(normal).signum());
+    let origin = spawn::offset_origin::<f32>(point, error, normal, direction);
+    (Ray::new(origin, direction), (origin - point).length())
+}
+
+#[test]
+fn f01_a_spawned_ray_does_not_meet_its_own_triangle() {
+    let mut random = Random::new(101);
+    for i in 0..1_000_000u32 {
+        let size = random.log_between(1e-6, 1e6);
+        let offset = if i % 4 == 0 { Vec3::ZERO } else { random.direction() * random.log_between(1.0, 1e4) };
+        let v = [(); 3].map(|()| offset + random.point(size));
+        let area = triangle::area_normal::<f32>(&v).length();
+        // What rounding leaves of a small triangle far away may have no plane to speak of.
+        if !(area > 1e-2 * size * size) || offset.length() > 1e4 * size {
+            continue;
+        }
+        let (ray, moved) = spawned(&mut random, &v, i % 2 == 0);
+        let hit = triangle::intersect(&SlabRay::new(&ray), &v, Exclude::Nothing);
+        assert_eq!(hit, None, "{v:?} {ray:?}");
+        let reach = v.iter().fold(size, |most, p| most.max(p.length()));
+        assert!(moved <= 2e-6 * reach, "moved by {moved:e} at {reach:e}");
+    }
+}
