@@ -41,7 +41,7 @@ fn build_world() -> anyhow::Result<World> {
     let quad = add_mesh(&mut world, MeshSource::Quad)?;
     let knot = add_mesh(
         &mut world,
-        MeshSource::TorusKnot { p: 2, q: 3, tube: 0.3, segments: 160, sides: 20 },
+        MeshSource::TorusKnot { p: 2, q: 3, tube: 0.16, segments: 256, sides: 32 },
     )?;
     let sponge = VolumeAsset::from_source(VolumeSource::Menger { level: 3 })?;
     let sponge = world.resource_mut::<Assets>().insert_volume(sponge);
@@ -49,7 +49,7 @@ fn build_world() -> anyhow::Result<World> {
     let ground = Transform { scale: DVec3::splat(40.0), ..Transform::default() };
     spawn(&mut world, (ground, MeshInstance { mesh: quad }, Material::lambert(Vec3::splat(0.6))));
     spawn(&mut world, (Transform::at(DVec3::new(-2.4, 1.0, 0.0)), Sphere { radius: 1.0 }, Material::dielectric(1.5)));
-    let knot_at = Transform { scale: DVec3::splat(0.6), ..Transform::at(DVec3::new(0.0, 1.2, 0.0)) };
+    let knot_at = Transform { scale: DVec3::splat(1.0), ..Transform::at(DVec3::new(0.0, 1.1, 0.0)) };
     spawn(&mut world, (knot_at, MeshInstance { mesh: knot }, Material::metal(Vec3::new(0.9, 0.6, 0.3), 0.1)));
     let sponge_at = Transform { scale: DVec3::splat(1.8 / 27.0), ..Transform::at(DVec3::new(1.6, 0.0, -0.9)) };
     spawn(&mut world, (sponge_at, VoxelVolume { volume: sponge }));

@@ -24,16 +24,15 @@ fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error} in {text}"))
 }
 
+/// The text of a PNG's iTXt chunk: length, `iTXt`, keyword, a zero, no compression (two bytes), two empty strings, text.
 fn png_text(path: &Path, key: &str) -> String {
     let bytes = std::fs::read(path).unwrap();
-    let start =
-        bytes.windows(key.len()).position(|w| w == key.as_bytes()).unwrap_or_else(|| panic!("no {key}"));
-    // Keyword, end, no compression (two bytes), two empty strings, then the text.
-    let text = &bytes[start + key.len() + 5..];
-    text.iter()
-        .take_while(|byte| byte.is_ascii_graphic() || **byte == b' ')
-        .map(|byte| char::from(*byte))
-        .collect()
+    let keyword = format!("iTXt{key}\0");
+    let found = bytes.windows(keyword.len()).position(|window| window == keyword.as_bytes());
+    let start = found.unwrap_or_else(|| panic!("no {key}"));
+    let length = u32::from_be_bytes(bytes[start - 4..start].try_into().unwrap()) as usize;
+    let text = &bytes[start + keyword.len() + 4..start + 4 + length];
+    String::from_utf8(text.to_vec()).unwrap()
 }
 
 fn exr_channels(path: &Path) -> Vec<String> {
@@ -266,14 +265,10 @@ fn help_is_complete() {
     assert!(render.contains("Ctrl-C") && render.contains("Examples:"), "{render}");
 }
 
+/// Starts the program, asks it to stop as Ctrl-C does, insists on success soon after, and gives stdout.
 #[cfg(unix)]
-#[test]
-fn an_interrupted_render_writes_what_there_is() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut command = luxel(folder.path());
-    command.arg("render").arg(asset("one_of_each.ron")).args(["--backend", "cpu", "-o", "out.png", "--json"]);
-    command.args(["--size", "320x180", "--spp", "1000000"]).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = command.spawn().unwrap();
+fn interrupted(command: &mut Command) -> String {
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     // Listening begins before the scene is read; this is plenty even on a busy machine.
     std::thread::sleep(Duration::from_millis(1500));
     let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
@@ -284,10 +279,29 @@ fn an_interrupted_render_writes_what_there_is() {
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     assert!(asked.elapsed() < Duration::from_secs(20), "it went on for {:?}", asked.elapsed());
     assert!(stderr.contains("note: interrupted"), "{stderr}");
-    assert_eq!(json(&String::from_utf8(output.stdout).unwrap())["stopped_by"], "interrupted");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_render_writes_what_there_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = luxel(folder.path());
+    command.arg("render").arg(asset("one_of_each.ron")).args(["--backend", "cpu", "-o", "out.png", "--json"]);
+    let answer = interrupted(command.args(["--size", "320x180", "--spp", "1000000"]));
+    assert_eq!(json(&answer)["stopped_by"], "interrupted");
     let picture = image::open(folder.path().join("out.png")).unwrap().into_rgb8();
     assert_eq!((picture.width(), picture.height()), (320, 180));
     assert_eq!(front_door::names(folder.path()), ["out.png"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn without_a_command_the_showcase_is_rendered_from_any_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = interrupted(&mut luxel(folder.path()));
+    assert!(line.starts_with("wrote showcase.png: 960x540"), "{line}");
+    assert_eq!(front_door::names(folder.path()), ["showcase.png"]);
 }
 
 #[cfg(unix)]

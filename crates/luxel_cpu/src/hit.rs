@@ -54,7 +54,7 @@ impl<R: Real> Hit<R> {
 pub struct Exclusion {
     /// Slot of its instance, or `NONE`.
     pub instance: u32,
-    /// Slot of a sphere or triangle, primitive id of a voxel.
+    /// Slot of the sphere, triangle or SVO node in its heap.
     pub primitive: u32,
     /// How the ray leaves it.
     pub how: Exclude,

@@ -62,8 +62,7 @@ fn scatter<R: Real>(
     path.eta_scale *= eta_scale;
     path.ray = Ray::new(surface.spawn_origin(wi), wi);
     let how = if wi.dot(surface.normal) > R::ZERO { Exclude::Leaving } else { Exclude::Entering };
-    let primitive = if is_voxel(scene, hit) { hit.on.primitive } else { hit.on.slot };
-    path.exclusion = Exclusion { instance: hit.instance, primitive, how };
+    path.exclusion = Exclusion { instance: hit.instance, primitive: hit.on.slot, how };
     true
 }
 
@@ -73,10 +72,6 @@ pub fn facing<R: Real>(surface: &Surface<R>, direction: R::Vec3) -> Geometry<R> 
     let front = wo.dot(surface.normal) >= R::ZERO;
     let normal = if front { surface.normal } else { -surface.normal };
     Geometry { wo, normal, front }
-}
-
-fn is_voxel<R: Real>(scene: &FlatScene, hit: &Hit<R>) -> bool {
-    scene.instances.as_slice()[hit.instance as usize].kind == luxel_flat::KIND_VOXELS
 }
 
 /// Russian roulette (pbrt-v4 §13.4.2): a dim path ends with probability `1 − brightness`; the others carry its

@@ -66,7 +66,7 @@ pub fn intersect_voxel<R: Real>(
     exclusion: &Exclusion,
 ) -> Option<PrimitiveHit<R>> {
     let primitive = voxel_id(cell, instance.levels);
-    let hit = voxel::intersect(ray, cell, exclusion.of(primitive))?;
+    let hit = voxel::intersect(ray, cell, exclusion.of(slot))?;
     Some(PrimitiveHit {
         t: hit.t,
         uv: [R::from_f64(f64::from(hit.face)), R::ZERO],

@@ -50,7 +50,9 @@ fn open_gpu(software: SoftwarePolicy) -> Result<ChosenTracer, EngineError> {
     let name = &gpu.facts().name;
     let because = match gpu.facts().kind {
         AdapterKind::Hardware => format!("{name} is a hardware GPU"),
-        AdapterKind::Software => format!("a GPU was asked for, and the software driver {name} is what there is"),
+        AdapterKind::Software => {
+            format!("a GPU was asked for, and the software driver {name} is what there is")
+        }
     };
     let tracer = GpuTracer::new(&gpu, SlicePolicy::HEADLESS)?;
     Ok(ChosenTracer { tracer: Box::new(tracer), because })

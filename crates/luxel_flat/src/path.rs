@@ -24,7 +24,7 @@ shared_struct! {
         pub state: u32,
         /// Slot of the instance that the ray starts on, or `NONE`.
         pub exclude_instance: u32,
-        /// Slot of the primitive that the ray starts on (for voxels the primitive id).
+        /// Slot of the sphere, triangle or SVO node that the ray starts on.
         pub exclude_primitive: u32,
         /// Parameter of the hit; `FAR` if there is none.
         pub hit_t: f32,

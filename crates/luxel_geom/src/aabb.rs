@@ -9,7 +9,7 @@
 //! parent contains the intervals of its children.
 use crate::{Real, SlabRay, Vector};
 
-/// A box with `lo <= hi` in every axis; [`Aabb::EMPTY`]-like boxes have `lo > hi`.
+/// A box with `lo <= hi` in every axis; the empty box ([`Aabb::empty`]) has `lo > hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb<R: Real> {
     /// Corner of smallest coordinates.

@@ -145,8 +145,9 @@ fn s08_spheres_without_a_size_are_never_hit() {
     for radius in [0.0, -0.0, -1.0, f32::NAN, f32::NEG_INFINITY] {
         for _ in 0..1000 {
             let center = random.point(1.0);
-            for ray in [Ray::new(random.direction() * 4.0, center), Ray::new(center, random.direction())] {
-                let aimed: Ray<f32> = Ray::new(ray.origin, ray.direction - ray.origin);
+            let outside = random.direction() * 4.0;
+            for (origin, direction) in [(outside, center - outside), (center, random.direction())] {
+                let aimed: Ray<f32> = Ray::new(origin, direction);
                 for exclude in [Exclude::Nothing, Exclude::Leaving, Exclude::Entering] {
                     assert_eq!(first_hit(&aimed, center, radius, exclude), None, "{radius:e}");
                 }
@@ -160,7 +161,7 @@ fn s08_a_subnormal_sphere_gives_no_nan() {
     let mut random = Random::new(88);
     for _ in 0..1000 {
         let ray: Ray<f32> = Ray::new(random.direction(), random.direction());
-        let aimed = Ray::new(ray.origin, -ray.origin);
+        let aimed: Ray<f32> = Ray::new(ray.origin, -ray.origin);
         for ray in [ray, aimed] {
             let t = first_hit(&ray, Vec3::ZERO, 1e-45, Exclude::Nothing);
             assert!(t.is_none_or(f32::is_finite), "{t:?}");

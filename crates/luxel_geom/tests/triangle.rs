@@ -1,7 +1,8 @@
 //! The triangle kernel by itself: watertight, right at its ends, and left without being met again
 //! (robustness.md T01–T03, T11–T14, F01).
 use glam::{DVec3, Vec3};
-use luxel_geom::{Exclude, Ray, SlabRay, Vector, rng, spawn, triangle};
+use luxel_geom::triangle::{self, TriangleHit};
+use luxel_geom::{Exclude, Ray, SlabRay, Vector, rng, spawn};
 use luxel_testkit::meshes::{bumpy_sphere, zero_area};
 use luxel_testkit::{Random, TestMesh};
 
@@ -13,9 +14,12 @@ fn closed_mesh() -> TestMesh {
     })
 }
 
-fn is_hit(triangles: &[[Vec3; 3]], ray: &Ray<f32>) -> bool {
-    let ray = SlabRay::new(ray);
-    triangles.iter().any(|v| triangle::intersect(&ray, v, Exclude::Nothing).is_some())
+fn hit(ray: &Ray<f32>, v: &[Vec3; 3]) -> Option<TriangleHit<f32>> {
+    triangle::intersect(&SlabRay::new(ray), v, Exclude::Nothing)
+}
+
+fn hit_between(ray: &Ray<f32>, t_min: f32, t_max: f32, v: &[Vec3; 3]) -> Option<TriangleHit<f32>> {
+    hit(&Ray { t_min, t_max, ..*ray }, v)
 }
 
 /// Möller and Trumbore 1997: fast, and not watertight.
@@ -44,7 +48,7 @@ fn rays_to_seams(mesh: &TestMesh, seed: u32, count: u32, middle: Vec3, reach: f3
 
 fn misses(mesh: &TestMesh, rays: &[Ray<f32>]) -> usize {
     let triangles: Vec<_> = (0..mesh.triangles.len()).map(|i| mesh.vertices(i)).collect();
-    rays.iter().filter(|ray| !is_hit(&triangles, ray)).count()
+    rays.iter().filter(|ray| triangles.iter().all(|v| hit(ray, v).is_none())).count()
 }
 
 #[test]
@@ -83,16 +87,13 @@ fn t11_the_interval_is_open_below_and_closed_above() {
     for _ in 0..20_000 {
         let v = [(); 3].map(|()| random.point(1.0));
         let ray: Ray<f32> = Ray::new(random.point(4.0), random.direction());
-        let between = |t_min, t_max| {
-            let ray = SlabRay::new(&Ray { t_min, t_max, ..ray });
-            triangle::intersect(&ray, &v, Exclude::Nothing)
-        };
-        let Some(hit) = between(0.0, 100.0) else { continue };
+        let between = |t_min, t_max| hit_between(&ray, t_min, t_max, &v);
+        let Some(first) = between(0.0, 100.0) else { continue };
         hits += 1;
-        let t = hit.t;
-        assert_eq!(between(0.0, t), Some(hit));
+        let t = first.t;
+        assert_eq!(between(0.0, t), Some(first));
         assert_eq!(between(0.0, t.next_down()), None);
-        assert_eq!(between(t.next_down(), 100.0), Some(hit));
+        assert_eq!(between(t.next_down(), 100.0), Some(first));
         assert_eq!(between(t, 100.0), None);
         assert_eq!(between(t.next_up(), 100.0), None);
     }
@@ -106,8 +107,8 @@ fn t12_winding_and_first_vertex_change_no_bit_of_t() {
     for _ in 0..100_000 {
         let v = [(); 3].map(|()| random.point(1.0));
         let origin = random.point(4.0);
-        let ray = SlabRay::new(&Ray::<f32>::new(origin, 0.3 * (v[0] + v[1] + v[2]) - origin));
-        let hits = orders.map(|order| triangle::intersect(&ray, &order.map(|i| v[i]), Exclude::Nothing));
+        let ray = Ray::new(origin, 0.3 * (v[0] + v[1] + v[2]) - origin);
+        let hits = orders.map(|order| hit(&ray, &order.map(|i| v[i])));
         assert!(hits.iter().all(|hit| hit.is_some() == hits[0].is_some()), "{hits:?}");
         let parameters = hits.map(|hit| hit.map_or(0.0, |hit| hit.t));
         let spread = parameters.iter().fold(0f32, |most, t| most.max((t - parameters[0]).abs()));
@@ -138,12 +139,12 @@ fn t13_needles_are_hit_wherever_the_exact_answer_is_inside() {
         let target = u * (needle[1] * (1.0 - w) + needle[2] * w);
         let origin = target + Vec3::Z * random.log_between(1e-2, 1e2);
         let ray: Ray<f32> = Ray::new(origin, target - origin);
-        let hit = triangle::intersect(&SlabRay::new(&ray), &needle, Exclude::Nothing);
+        let is_hit = hit(&ray, &needle).is_some();
         if exact_side(&needle, &ray) > 0.0 {
             inside += 1;
-            assert!(hit.is_some(), "{ray:?}");
+            assert!(is_hit, "{ray:?}");
         } else if !(-0.25..=1.25).contains(&w) {
-            outside += u32::from(hit.is_none());
+            outside += u32::from(!is_hit);
         }
     }
     assert!(inside > 30_000 && outside > 10_000, "{inside} {outside}");
@@ -157,11 +158,10 @@ fn t14_triangles_without_area_are_never_hit() {
         let v = mesh.vertices(i);
         let origin = random.point(4.0);
         let target = if k % 2 == 0 { v[k % 3] } else { v[0] + (v[2] - v[0]) * random.uniform() };
-        let ray: Ray<f32> = Ray::new(origin, target - origin);
-        let hit = triangle::intersect(&SlabRay::new(&ray), &v, Exclude::Nothing);
+        let found = hit(&Ray::new(origin, target - origin), &v);
         let is_exact = i % 3 != 2;
         // A middle point is rounded: such a "line" is a triangle with an area of a rounding.
-        assert!(hit.is_none_or(|hit| !is_exact && hit.t.is_finite()), "{v:?} {hit:?}");
+        assert!(found.is_none_or(|hit| !is_exact && hit.t.is_finite()), "{v:?} {found:?}");
     }
 }
 
@@ -193,8 +193,7 @@ fn f01_a_spawned_ray_does_not_meet_its_own_triangle() {
             continue;
         }
         let (ray, moved) = spawned(&mut random, &v, i % 2 == 0);
-        let hit = triangle::intersect(&SlabRay::new(&ray), &v, Exclude::Nothing);
-        assert_eq!(hit, None, "{v:?} {ray:?}");
+        assert_eq!(hit(&ray, &v), None, "{v:?} {ray:?}");
         let reach = v.iter().fold(size, |most, p| most.max(p.length()));
         assert!(moved <= 2e-6 * reach, "moved by {moved:e} at {reach:e}");
     }

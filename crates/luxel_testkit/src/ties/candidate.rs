@@ -1,28 +1,16 @@
 //! A ray and one primitive in f64: where it is met, and whether that is beyond doubt.
-use glam::DVec3;
+use glam::{DVec3, UVec3, Vec3};
 use luxel_flat::{Instance, SphereRecord, Triangle};
-use luxel_geom::{Affine, Ray, SlabRay};
+use luxel_geom::{Affine, Exclude, Ray, SlabRay, sphere, triangle, voxel};
 
 use super::{Answer, BORDER_ULPS, SAME_DEPTH};
 
 /// Distance of two neighbouring singles at 1.
 const ULP: f64 = 1.0 / (1u32 << 23) as f64;
 
-/// A primitive that a tracer in single precision may find.
-pub(super) struct Candidate {
-    pub(super) answer: Answer,
-    /// Smallest and largest parameter that such a tracer may compute.
-    pub(super) lo: f64,
-    pub(super) hi: f64,
-    /// False if such a tracer may miss it.
-    pub(super) is_sure: bool,
-}
-
 /// A ray in the space of an instance.
 pub(super) struct ObjectRay {
-    origin: DVec3,
-    direction: DVec3,
-    inv_direction: DVec3,
+    ray: SlabRay<f64>,
     /// Sizes of the terms that the origin and the direction are computed from, per axis.
     origin_terms: DVec3,
     direction_terms: DVec3,
@@ -34,101 +22,163 @@ impl ObjectRay {
         let origin = object_from_world.point(ray.origin);
         let direction = object_from_world.vector(ray.direction);
         Self {
-            origin,
-            direction,
-            inv_direction: SlabRay::<f64>::new(&Ray::new(origin, direction)).inv_direction,
+            ray: SlabRay::new(&Ray { origin, direction, ..*ray }),
             origin_terms: object_from_world.abs_vector(ray.origin) + object_from_world.translation.abs(),
             // A camera ray's direction is a sum of terms of about its length, whatever is left of them on an axis.
             direction_terms: object_from_world.abs_vector(DVec3::splat(ray.direction.length())),
         }
     }
 
+    /// The same ray from another origin.
+    pub(super) fn shifted(&self, by: DVec3) -> SlabRay<f64> {
+        SlabRay { origin: self.ray.origin + by, ..self.ray }
+    }
+
     /// One ulp of the coordinates involved in meeting something with these corners, per axis; never 0.
     fn ulps(&self, corners: &[DVec3]) -> DVec3 {
         let largest =
             |f: &dyn Fn(DVec3) -> DVec3| corners.iter().fold(DVec3::ZERO, |most, p| most.max(f(*p)));
-        let (size, away) = (largest(&|p| p.abs()), largest(&|p| (p - self.origin).abs()));
+        let (size, away) = (largest(&|p| p.abs()), largest(&|p| (p - self.ray.origin).abs()));
         // No part of the thing is farther along the ray.
-        let t_max = away.length() / self.direction.length();
-        let terms = self.origin_terms + self.direction_terms * t_max;
-        let all = size.max(away).max(terms);
+        let t_max = away.length() / self.ray.direction.length();
+        let all = size.max(away).max(self.origin_terms + self.direction_terms * t_max);
         all.max(DVec3::splat(all.max_element() * ULP)) * ULP
     }
+}
 
-    /// The candidate that is met at `t`, or up to `slack` before or behind.
-    fn candidate(&self, answer: Answer, t: f64, slack: f64, is_sure: bool) -> Option<Candidate> {
-        let slack = slack.max(0.5 * SAME_DEPTH * t);
-        (t > 0.0).then_some(Candidate { answer, lo: t - slack, hi: t + slack, is_sure })
+/// What a ray can meet, in the space of its instance.
+#[derive(Clone, Copy)]
+pub(super) enum Primitive {
+    Sphere {
+        center: DVec3,
+        radius: f64,
+    },
+    Triangle([DVec3; 3]),
+    /// A unit cell.
+    Voxel([u32; 3]),
+}
+
+/// A primitive that a tracer in single precision may find.
+pub(super) struct Candidate {
+    pub(super) answer: Answer,
+    pub(super) primitive: Primitive,
+    /// One ulp of the coordinates involved, per axis.
+    pub(super) ulps: DVec3,
+    /// Smallest and largest parameter that such a tracer may compute.
+    pub(super) lo: f64,
+    pub(super) hi: f64,
+    /// False if such a tracer may miss it.
+    pub(super) is_sure: bool,
+}
+
+/// Where a primitive is met: the parameter, by how much it may be off, and whether it is met without doubt.
+struct Met {
+    t: f64,
+    slack: f64,
+    is_sure: bool,
+}
+
+impl Primitive {
+    pub(super) fn sphere(record: &SphereRecord) -> Self {
+        Self::Sphere { center: Vec3::from(record.center).as_dvec3(), radius: record.radius.into() }
     }
 
-    pub(super) fn sphere(&self, record: &SphereRecord, answer: Answer) -> Option<Candidate> {
-        let (center, radius) =
-            (DVec3::from(glam::Vec3::from(record.center).as_dvec3()), f64::from(record.radius));
-        let blur = BORDER_ULPS * self.ulps(&[center - radius, center + radius]).max_element();
-        let length = self.direction.length();
-        let f = self.origin - center;
-        let t_closest = -f.dot(self.direction) / (length * length);
-        let miss = (f + self.direction * t_closest).length();
-        let margin = radius - miss;
-        if margin < -blur {
-            return None;
+    pub(super) fn triangle(record: &Triangle) -> Self {
+        Self::Triangle(record.vertices().map(|v| Vec3::from(v).as_dvec3()))
+    }
+
+    /// True if the ray meets the primitive in f64.
+    pub(super) fn is_hit(&self, ray: &SlabRay<f64>) -> bool {
+        match self {
+            Self::Sphere { center, radius } => {
+                sphere::intersect(ray, *center, *radius, Exclude::Nothing).is_some()
+            }
+            Self::Triangle(corners) => triangle::intersect(ray, corners, Exclude::Nothing).is_some(),
+            Self::Voxel(cell) => voxel::intersect(ray, *cell, Exclude::Nothing).is_some(),
         }
-        let half_chord = (margin * (radius + miss)).max(0.0).sqrt();
-        let half = half_chord / length;
-        let t = if t_closest > half { t_closest - half } else { t_closest + half };
-        // Where the ray meets the sphere steeply the first is the smaller, where it is nearly a tangent the second.
-        let along = (blur * radius / half_chord.max(f64::MIN_POSITIVE)).min((4.0 * blur * radius).sqrt());
-        self.candidate(answer, t, along / length, margin > blur)
     }
 
-    pub(super) fn triangle(&self, record: &Triangle, answer: Answer) -> Option<Candidate> {
-        let corners = record.vertices().map(|v| glam::Vec3::from(v).as_dvec3());
-        // Everything in ulps: a distance below means the same along every axis.
-        let ulps = self.ulps(&corners);
-        let direction = self.direction / ulps;
-        let corners = corners.map(|p| (p - self.origin) / ulps);
-        let square = direction.length_squared();
-        let along = corners.map(|p| p.dot(direction) / square);
-        let seen: [DVec3; 3] = std::array::from_fn(|k| corners[k] - direction * along[k]);
-        let edges = [(0, 1), (1, 2), (2, 0)];
-        let turns = edges.map(|(a, b)| direction.dot(seen[a].cross(seen[b])));
-        let is_inside = turns.iter().all(|turn| *turn > 0.0) || turns.iter().all(|turn| *turn < 0.0);
-        let to_border =
-            edges.map(|(a, b)| distance_to_segment(seen[a], seen[b])).into_iter().fold(f64::MAX, f64::min);
-        if !is_inside && to_border > BORDER_ULPS {
-            return None;
-        }
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-        let (first, last) =
-            (along.iter().copied().fold(f64::MAX, f64::min), along.iter().copied().fold(0.0, f64::max));
-        let steepness = normal.dot(direction);
-        let (t, slack) = if steepness == 0.0 {
-            (0.5 * (first + last), last - first)
-        } else {
-            (normal.dot(corners[0]) / steepness, BORDER_ULPS * normal.length() / steepness.abs())
+    /// What a tracer in single precision may find of this primitive.
+    pub(super) fn candidate(&self, answer: Answer, ray: &ObjectRay) -> Option<Candidate> {
+        let (ulps, met) = match *self {
+            Self::Sphere { center, radius } => {
+                let ulps = ray.ulps(&[center - radius, center + radius]);
+                (ulps, meet_sphere(&ray.ray, center, radius, ulps)?)
+            }
+            Self::Triangle(corners) => {
+                let ulps = ray.ulps(&corners);
+                (ulps, meet_triangle(&ray.ray, &corners, ulps)?)
+            }
+            Self::Voxel(cell) => {
+                let corners = [UVec3::from(cell).as_dvec3(), (UVec3::from(cell) + 1).as_dvec3()];
+                let ulps = ray.ulps(&corners);
+                (ulps, meet_box(&ray.ray, corners, ulps)?)
+            }
         };
-        self.candidate(
-            answer,
-            t.clamp(first, last.max(first)),
-            slack.min(last - first),
-            is_inside && to_border > BORDER_ULPS,
-        )
+        let slack = met.slack.max(0.5 * SAME_DEPTH * met.t);
+        let (lo, hi) = (met.t - slack, met.t + slack);
+        (met.t > 0.0).then_some(Candidate { answer, primitive: *self, ulps, lo, hi, is_sure: met.is_sure })
     }
+}
 
-    pub(super) fn voxel(&self, cell: [u32; 3], answer: Answer) -> Option<Candidate> {
-        let (lo, hi) = (glam::UVec3::from(cell).as_dvec3(), (glam::UVec3::from(cell) + 1).as_dvec3());
-        let blur = self.ulps(&[lo, hi]) * BORDER_ULPS;
-        let met = |lo: DVec3, hi: DVec3| {
-            let (t0, t1) = ((lo - self.origin) * self.inv_direction, (hi - self.origin) * self.inv_direction);
-            let (enter, exit) = (t0.min(t1).max_element(), t0.max(t1).min_element());
-            (enter <= exit && exit > 0.0).then_some(if enter > 0.0 { enter } else { exit })
-        };
-        let grown = met(lo - blur, hi + blur)?;
-        let shrunk = (lo + blur).cmple(hi - blur).all().then(|| met(lo + blur, hi - blur)).flatten();
-        let t = met(lo, hi).unwrap_or(grown);
-        let slack = (grown - t).abs().max((shrunk.unwrap_or(t) - t).abs());
-        self.candidate(answer, t, slack, shrunk.is_some())
+fn meet_sphere(ray: &SlabRay<f64>, center: DVec3, radius: f64, ulps: DVec3) -> Option<Met> {
+    let blur = BORDER_ULPS * ulps.max_element();
+    let length = ray.direction.length();
+    let f = ray.origin - center;
+    let t_closest = -f.dot(ray.direction) / (length * length);
+    let miss = (f + ray.direction * t_closest).length();
+    let margin = radius - miss;
+    if margin < -blur {
+        return None;
     }
+    let half_chord = (margin * (radius + miss)).max(0.0).sqrt();
+    let half = half_chord / length;
+    let t = if t_closest > half { t_closest - half } else { t_closest + half };
+    // Where the ray meets the sphere steeply the first is the smaller, where it is nearly a tangent the second.
+    let along = (blur * radius / half_chord.max(f64::MIN_POSITIVE)).min((4.0 * blur * radius).sqrt());
+    Some(Met { t, slack: along / length, is_sure: margin > blur })
+}
+
+fn meet_triangle(ray: &SlabRay<f64>, corners: &[DVec3; 3], ulps: DVec3) -> Option<Met> {
+    // Everything in ulps: a distance means the same along every axis.
+    let direction = ray.direction / ulps;
+    let corners = corners.map(|p| (p - ray.origin) / ulps);
+    let along = corners.map(|p| p.dot(direction) / direction.length_squared());
+    let seen: [DVec3; 3] = std::array::from_fn(|k| corners[k] - direction * along[k]);
+    let edges = [(seen[0], seen[1]), (seen[1], seen[2]), (seen[2], seen[0])];
+    let turns = edges.map(|(a, b)| direction.dot(a.cross(b)));
+    let is_inside = turns.iter().all(|turn| *turn > 0.0) || turns.iter().all(|turn| *turn < 0.0);
+    let border = edges.map(|(a, b)| distance_to_segment(a, b)).into_iter().fold(f64::MAX, f64::min);
+    if !is_inside && border > BORDER_ULPS {
+        return None;
+    }
+    let (first, last) = (along[0].min(along[1]).min(along[2]), along[0].max(along[1]).max(along[2]));
+    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    let steepness = normal.dot(direction);
+    let (t, slack) = if steepness == 0.0 {
+        (0.5 * (first + last), last - first)
+    } else {
+        (normal.dot(corners[0]) / steepness, BORDER_ULPS * normal.length() / steepness.abs())
+    };
+    Some(Met {
+        t: t.clamp(first, last),
+        slack: slack.min(last - first),
+        is_sure: is_inside && border > BORDER_ULPS,
+    })
+}
+
+fn meet_box(ray: &SlabRay<f64>, [lo, hi]: [DVec3; 2], ulps: DVec3) -> Option<Met> {
+    let blur = ulps * BORDER_ULPS;
+    let met = |lo: DVec3, hi: DVec3| {
+        let (t0, t1) = ((lo - ray.origin) * ray.inv_direction, (hi - ray.origin) * ray.inv_direction);
+        let (enter, exit) = (t0.min(t1).max_element(), t0.max(t1).min_element());
+        (enter <= exit && exit > 0.0).then_some(if enter > 0.0 { enter } else { exit })
+    };
+    let grown = met(lo - blur, hi + blur)?;
+    let shrunk = (lo + blur).cmple(hi - blur).all().then(|| met(lo + blur, hi - blur)).flatten();
+    let t = met(lo, hi).unwrap_or(grown);
+    let slack = (grown - t).abs().max((shrunk.unwrap_or(t) - t).abs());
+    Some(Met { t, slack, is_sure: shrunk.is_some() })
 }
 
 /// Distance of the origin from the segment between two points.

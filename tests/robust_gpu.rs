@@ -1,0 +1,148 @@
+//! The GPU fails and the job does not: a lost device, a scene that does not fit, a graph in another order; and the
+//! resolve node shows what the film's own display shows.
+#![allow(clippy::unwrap_used)]
+mod backends;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use backends::{asset, trace};
+use luxel_cpu::CpuTracer;
+use luxel_engine::{BackendChoice, ChosenTracer, RenderEvent, RenderJob};
+use luxel_film::tracer::{Backend, TraceError, TraceRequest, Tracer};
+use luxel_film::{Display, ToneMap, View};
+use luxel_flat::{FlatScene, Heap, Triangle};
+use luxel_gpu::{Gpu, GpuRequest, LimitsTier, SlicePolicy, SoftwarePolicy, testing::gpu_or_fail};
+use luxel_render::{GpuTracer, NODES};
+use luxel_testkit::Random;
+
+const SIZE: [u32; 2] = [96, 64];
+
+fn gpu_tracer(gpu: &Gpu) -> GpuTracer {
+    GpuTracer::new(gpu, SlicePolicy::HEADLESS).unwrap()
+}
+
+#[test]
+fn a_device_lost_in_mid_job_leaves_the_job_to_the_cpu() {
+    let Some(gpu) = gpu_or_fail() else { return };
+    let job = RenderJob { spp: Some(64), ..RenderJob::default() };
+    let chosen = ChosenTracer { tracer: Box::new(gpu_tracer(&gpu)), because: "the test says so".to_owned() };
+    let mut events = Vec::new();
+    let mut engine = asset("showcase.ron", SIZE);
+    let rendered = engine.render_with(chosen, &job, &mut |event| {
+        if events.is_empty() {
+            gpu.destroy_for_test();
+        }
+        events.push(event.clone());
+        ControlFlow::Continue(())
+    });
+    let rendered = rendered.unwrap();
+
+    assert!(matches!(events[0], RenderEvent::Progress(p) if p.fraction < 1.0), "the GPU was done: {:?}", events[0]);
+    let notices: Vec<_> = events.iter().filter(|event| matches!(event, RenderEvent::Notice(_))).collect();
+    assert_eq!(notices.len(), 1, "{notices:?}");
+    assert_eq!(rendered.notices.len(), 1);
+    assert!(rendered.notices[0].contains("lost"), "{}", rendered.notices[0]);
+    assert_eq!(rendered.facts.backend, Backend::Cpu);
+    let on_cpu = RenderJob { backend: BackendChoice::Cpu, ..job };
+    let expected = asset("showcase.ron", SIZE).render(&on_cpu, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert!(rendered.film == expected.film, "the CPU made another picture after the loss");
+}
+
+#[test]
+fn a_lost_device_gives_errors_and_no_panic() {
+    let Some(gpu) = gpu_or_fail() else { return };
+    let request = TraceRequest::new(asset("showcase.ron", SIZE).bake().unwrap());
+    let mut tracer = gpu_tracer(&gpu);
+    tracer.set_scene(request.clone()).unwrap();
+    gpu.destroy_for_test();
+    assert!(matches!(tracer.advance(1.0, 1), Err(TraceError::DeviceLost(_))));
+    assert!(matches!(tracer.film(), Err(TraceError::DeviceLost(_))));
+    assert!(GpuTracer::new(&gpu, SlicePolicy::HEADLESS).is_err());
+    assert!(tracer.resolve(&Display::default()).is_err());
+}
+
+#[test]
+fn a_scene_that_does_not_fit_is_refused_clearly_and_the_next_one_taken() {
+    // The least that any adapter offers: 128 MiB per binding.
+    let request = GpuRequest {
+        software: SoftwarePolicy::Allow,
+        tier: LimitsTier::WebGpuDefault,
+        ..GpuRequest::from_env()
+    };
+    if gpu_or_fail().is_none() {
+        return;
+    }
+    let mut tracer = gpu_tracer(&Gpu::open(&request).unwrap());
+    let scene = asset("one_of_each.ron", SIZE).bake().unwrap();
+    let count = (128 << 20) / size_of::<Triangle>() + 1;
+    let triangles = Heap::from_records(vec![Triangle::default(); count], scene.revision + 1);
+    let large = FlatScene { triangles, revision: scene.revision + 1, ..(*scene).clone() };
+    match tracer.set_scene(TraceRequest::new(Arc::new(large))) {
+        Err(TraceError::OutOfMemory(message)) => {
+            assert!(message.contains("triangles") && !message.contains('\n'), "{message}");
+        }
+        other => panic!("128 MiB and a triangle: {other:?}"),
+    }
+    assert!(tracer.advance(1.0, 1).is_err(), "there is nothing to trace");
+    let small = FlatScene { revision: scene.revision + 2, ..(*scene).clone() };
+    let request = TraceRequest::new(Arc::new(small));
+    let film = trace(&mut tracer, &request, 1).film;
+    assert_eq!(film.samples(), 1);
+}
+
+#[test]
+fn nodes_run_in_the_graphs_order_whatever_the_order_in_which_they_were_added() {
+    let Some(gpu) = gpu_or_fail() else { return };
+    let scene = asset("one_of_each.ron", SIZE).bake().unwrap();
+    let request = TraceRequest::new(scene).with_aovs(true);
+    let labels = |order: Vec<usize>| {
+        let mut tracer = gpu_tracer(&gpu).with_node_order(order);
+        let traced = trace(&mut tracer, &request, 2);
+        let passes: Vec<String> = traced.stats.passes.iter().map(|pass| pass.label.clone()).collect();
+        (traced.film, passes, tracer.resolve(&Display::default()).unwrap())
+    };
+    let (film, passes, picture) = labels((0..NODES.len()).collect());
+    assert_eq!(passes, ["generate", "intersect", "first_hits", "shade", "accumulate"]);
+    let mut order: Vec<usize> = (0..NODES.len()).collect();
+    for seed in 0..4 {
+        Random::new(seed).shuffle(&mut order);
+        let shuffled = labels(order.clone());
+        assert_eq!(shuffled.1, passes, "{order:?}");
+        assert!(shuffled.0 == film && shuffled.2 == picture, "{order:?} makes another picture");
+    }
+}
+
+#[test]
+fn the_resolve_node_shows_what_the_display_shows() {
+    let Some(gpu) = gpu_or_fail() else { return };
+    let request = TraceRequest::new(asset("showcase.ron", [320, 180]).bake().unwrap());
+    let mut tracer = gpu_tracer(&gpu);
+    let film = trace(&mut tracer, &request, 4).film;
+    for tone_map in ToneMap::ALL {
+        let display = Display { tone_map: *tone_map, exposure: 0.5 };
+        let shown = tracer.resolve(&display).unwrap();
+        let expected = display.pixels(&film, View::PathTraced).unwrap();
+        let share = share_within_one(&shown, &expected);
+        println!("{}: {:.4} % of bytes within one code value", tone_map.name(), 100.0 * share);
+        assert!(share >= 0.999, "{}: {share}", tone_map.name());
+        let brighter = Display { exposure: 0.6, ..display }.pixels(&film, View::PathTraced).unwrap();
+        assert!(share_within_one(&shown, &brighter) < 0.999, "the comparison sees no exposure");
+    }
+}
+
+fn share_within_one(a: &[[u8; 3]], b: &[[u8; 3]]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let pairs = a.as_flattened().iter().zip(b.as_flattened());
+    pairs.filter(|(x, y)| x.abs_diff(**y) <= 1).count() as f64 / (3 * a.len()) as f64
+}
+
+#[test]
+fn one_seed_makes_one_picture_on_the_cpu_however_often_it_is_asked() {
+    let request = TraceRequest::new(asset("one_of_each.ron", SIZE).bake().unwrap());
+    let mut cut = CpuTracer::new();
+    cut.set_scene(request.clone()).unwrap();
+    while cut.advance(0.0, 3).unwrap().samples < 3 {}
+    let whole = trace(&mut CpuTracer::new(), &request, 3);
+    assert!(cut.film().unwrap() == whole.film);
+}
