@@ -1,12 +1,15 @@
 //! The GPU fails and the job does not: a lost device, a scene that does not fit, a graph in another order; and the
 //! resolve node shows what the film's own display shows.
 #![allow(clippy::unwrap_used)]
-mod backends;
+#[path = "support/asset.rs"]
+mod asset;
+#[path = "support/traced.rs"]
+mod traced;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use backends::{asset, trace};
+use asset::asset;
 use luxel_cpu::CpuTracer;
 use luxel_engine::{BackendChoice, ChosenTracer, RenderEvent, RenderJob};
 use luxel_film::tracer::{Backend, TraceError, TraceRequest, Tracer};
@@ -15,6 +18,7 @@ use luxel_flat::{FlatScene, Heap, Triangle};
 use luxel_gpu::{Gpu, GpuRequest, LimitsTier, SlicePolicy, SoftwarePolicy, testing::gpu_or_fail};
 use luxel_render::{GpuTracer, NODES};
 use luxel_testkit::Random;
+use traced::trace;
 
 const SIZE: [u32; 2] = [96, 64];
 

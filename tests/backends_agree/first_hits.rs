@@ -9,7 +9,8 @@ use luxel_gpu::{Gpu, SlicePolicy, testing::gpu_or_fail};
 use luxel_render::GpuTracer;
 use luxel_testkit::ties::{Answer, Judge};
 
-use crate::backends::{asset, trace};
+use crate::asset::asset;
+use crate::traced::trace;
 
 const SIZE: [u32; 2] = [320, 180];
 /// Share of pixels whose ids must be equal.

@@ -3,7 +3,8 @@ use luxel_film::tracer::TraceRequest;
 use luxel_gpu::{Gpu, SlicePolicy, testing::gpu_or_fail};
 use luxel_render::GpuTracer;
 
-use crate::backends::{Traced, asset, trace};
+use crate::asset::asset;
+use crate::traced::{Traced, trace};
 
 const SAMPLES: u32 = 3;
 

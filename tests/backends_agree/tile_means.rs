@@ -12,7 +12,8 @@ use luxel_render::GpuTracer;
 use luxel_scene::RenderSettings;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::backends::{asset, trace};
+use crate::asset::asset;
+use crate::traced::trace;
 
 const SIZE: [u32; 2] = [96, 64];
 const TILE: usize = 32;

@@ -2,9 +2,9 @@
 //! nothing of it, runs no node of it, counts zero on both backends, and its picture is the one that the code with
 //! all features makes: bit for bit on the CPU, path by path on the GPU.
 #![allow(clippy::unwrap_used)]
-#[path = "../backends/mod.rs"]
-mod backends;
 mod scene;
+#[path = "../support/traced.rs"]
+mod traced;
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use luxel_flat::{Counter, FEATURES, Feature, FeatureRow, FeatureSet};
 use luxel_gpu::{Gpu, ShaderLibrary, SlicePolicy, testing::gpu_or_fail};
 use luxel_render::{GpuTracer, KERNELS, NODES, conditions};
 
-use backends::{Traced, trace};
+use traced::{Traced, trace};
 
 /// Share of paths that must agree between the scene's own code and that with all features.
 const MIN_AGREEING: f64 = 0.9999;

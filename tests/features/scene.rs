@@ -11,7 +11,7 @@ const SIZE: [u32; 2] = [192, 108];
 
 /// A row of each kind of primitive, in every material, before a gradient sky, seen through a lens; without one of
 /// the features if one is named.
-pub fn without(feature: Option<Feature>) -> World {
+pub(crate) fn without(feature: Option<Feature>) -> World {
     let mut world = luxel_scene::empty_world();
     world.insert_resource(Environment::Gradient {
         zenith: Vec3::new(0.35, 0.5, 0.8),

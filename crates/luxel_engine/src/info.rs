@@ -65,7 +65,7 @@ impl Engine {
         })
     }
 
-    /// Hash of the scene's content: equal for scenes that look equal and carry equal ids.
+    /// Hash of the scene with its settings: equal for scenes that look equal and carry equal ids.
     ///
     /// # Errors
     /// When the scene cannot be written out.

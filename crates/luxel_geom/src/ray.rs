@@ -8,7 +8,7 @@ use crate::{Real, Vector};
 pub struct Ray<R: Real> {
     /// Start point.
     pub origin: R::Vec3,
-    /// Direction, of any finite non-zero length.
+    /// Direction, of any length between `1 / FAR` and `FAR`.
     pub direction: R::Vec3,
     /// Open lower end of the interval.
     pub t_min: R,
@@ -27,13 +27,14 @@ impl<R: Real> Ray<R> {
         self.origin + self.direction * t
     }
 
-    /// False for rays that no primitive can be hit by: a NaN or infinity anywhere, or a zero direction.
+    /// False for rays that no primitive can be hit by: a NaN or infinity anywhere, or a direction shorter than
+    /// `1 / FAR`.
     pub fn is_valid(&self) -> bool {
         self.origin.is_finite()
             && self.direction.is_finite()
             && self.t_min.is_finite()
             && self.t_max.is_finite()
-            && self.direction.abs().max_element() > R::ZERO
+            && self.direction.abs().max_element() > R::ONE / R::FAR
     }
 }
 
@@ -69,13 +70,15 @@ pub struct SlabRay<R: Real> {
 
 /// Components below this fraction of the largest one are raised to it before the reciprocal is taken, so that
 /// the reciprocal is finite and a ray in the plane of a face meets `0 · finite`, never `0 · ∞`
-/// (robustness.md, A2). The ray bends by less than 2⁻⁶⁴ of its length.
+/// (robustness.md, A2). The ray bends by less than 2⁻⁶⁴ of its length. No component stays below `1 / FAR` either, for
+/// the sake of very short directions.
 pub const MIN_DIRECTION_RATIO: f32 = 1.0 / (1u128 << 64) as f32;
 
 impl<R: Real> SlabRay<R> {
     /// Prepares a valid ray (see [`Ray::is_valid`]).
     pub fn new(ray: &Ray<R>) -> Self {
         let smallest = ray.direction.abs().max_element() * R::from_f32(MIN_DIRECTION_RATIO);
+        let smallest = smallest.max(R::ONE / R::FAR);
         let inv_direction = ray.direction.map(|d| R::ONE / d.abs().max(smallest).with_sign_of(d));
         Self {
             origin: ray.origin,

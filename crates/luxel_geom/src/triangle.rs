@@ -59,19 +59,20 @@ fn intersect_plane_parallelogram<R: Real>(ray: &SlabRay<R>, v: &[R::Vec3; 3]) ->
     let (e2, d2) = edge(&s[0], &s[1]);
     let front = e0 >= -d0 && e1 >= -d1 && e2 >= -d2;
     let back = e0 <= d0 && e1 <= d1 && e2 <= d2;
-    let det = e0 + e1 + e2;
+    // In this order a triangle and the same seen from behind (two vertices swapped) give the same bits.
+    let det = e0 + (e1 + e2);
     if !(front || back) || det == R::ZERO {
         return None;
     }
     let weights = inside(e0 / det, e1 / det, e2 / det)?;
-    let t = (weights[0] * s[0].z + weights[1] * s[1].z + weights[2] * s[2].z) * inv_z;
+    let t = (weights[0] * s[0].z + (weights[1] * s[1].z + weights[2] * s[2].z)) * inv_z;
     (t > t_error(&s, det, inv_z)).then_some(TriangleHit { t, u: weights[1], v: weights[2] })
 }
 
 /// Barycentric weights held inside the triangle: the tolerance may let them stand just outside.
 fn inside<R: Real>(w0: R, w1: R, w2: R) -> Option<[R; 3]> {
     let w = [w0, w1, w2].map(|w| w.clamped(R::ZERO, R::ONE));
-    let sum = w[0] + w[1] + w[2];
+    let sum = w[0] + (w[1] + w[2]);
     // A triangle seen edge-on has no weights to speak of; its neighbours are hit instead.
     (sum > R::from_f64(0.5) && sum < R::from_f64(2.0)).then(|| w.map(|w| w / sum))
 }

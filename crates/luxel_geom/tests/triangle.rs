@@ -86,7 +86,8 @@ fn t11_the_interval_is_open_below_and_closed_above() {
     let mut hits = 0;
     for _ in 0..20_000 {
         let v = [(); 3].map(|()| random.point(1.0));
-        let ray: Ray<f32> = Ray::new(random.point(4.0), random.direction());
+        let origin = random.point(4.0);
+        let ray: Ray<f32> = Ray::new(origin, v[0] + 0.3 * (v[1] - v[0]) + 0.3 * (v[2] - v[0]) - origin);
         let between = |t_min, t_max| hit_between(&ray, t_min, t_max, &v);
         let Some(first) = between(0.0, 100.0) else { continue };
         hits += 1;
@@ -97,23 +98,22 @@ fn t11_the_interval_is_open_below_and_closed_above() {
         assert_eq!(between(t, 100.0), None);
         assert_eq!(between(t.next_up(), 100.0), None);
     }
-    assert!(hits > 200, "{hits}");
+    assert!(hits > 19_000, "{hits}");
 }
 
 #[test]
-fn t12_winding_and_first_vertex_change_no_bit_of_t() {
+fn t12_a_triangle_and_its_back_give_the_same_bits() {
     let mut random = Random::new(12);
-    let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+    let mut hits = 0;
     for _ in 0..100_000 {
         let v = [(); 3].map(|()| random.point(1.0));
         let origin = random.point(4.0);
         let ray = Ray::new(origin, 0.3 * (v[0] + v[1] + v[2]) - origin);
-        let hits = orders.map(|order| hit(&ray, &order.map(|i| v[i])));
-        assert!(hits.iter().all(|hit| hit.is_some() == hits[0].is_some()), "{hits:?}");
-        let parameters = hits.map(|hit| hit.map_or(0.0, |hit| hit.t));
-        let spread = parameters.iter().fold(0f32, |most, t| most.max((t - parameters[0]).abs()));
-        assert!(spread <= 4.0 * f32::EPSILON * parameters[0], "{parameters:?}");
+        let (front, back) = (hit(&ray, &v), hit(&ray, &[v[0], v[2], v[1]]));
+        assert_eq!(front, back.map(|hit| TriangleHit { t: hit.t, u: hit.v, v: hit.u }));
+        hits += u32::from(front.is_some());
     }
+    assert!(hits > 90_000, "{hits}");
 }
 
 /// The exact verdict: on which side of each edge the ray's line passes. Positive if inside.

@@ -6,7 +6,7 @@ use luxel_film::Backend;
 pub struct Metadata {
     /// Path of the scene file as it was given.
     pub scene: String,
-    /// Hash of the scene's content.
+    /// Hash of the scene as it was rendered, its settings included.
     pub scene_hash: String,
     /// Samples that every pixel has.
     pub samples: u32,
@@ -18,7 +18,7 @@ pub struct Metadata {
     pub seconds: f64,
     /// Names of the features in use.
     pub features: Vec<String>,
-    /// Settings of the render, in the notation that scene files use.
+    /// Settings of the render, in words.
     pub settings: String,
 }
 
