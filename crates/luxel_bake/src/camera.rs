@@ -59,11 +59,13 @@ impl CameraView {
         let half_height = (0.5 * self.camera.vertical_fov).tan();
         let half_width = half_height * f64::from(width) / f64::from(height);
         let single = |v: DVec3| v.as_vec3().to_array();
+        // A pinhole is sharp everywhere: with 1 the code for a lens makes its rays, bit for bit.
+        let focus_distance = if self.has_lens() { self.camera.focus_distance } else { 1.0 };
         CameraRecord {
             origin: single(self.eye - anchor),
             lens_radius: self.camera.lens_radius as f32,
             corner: single(self.up * half_height - self.right * half_width - self.back),
-            focus_distance: self.camera.focus_distance as f32,
+            focus_distance: focus_distance as f32,
             dx: single(self.right * (2.0 * half_width / f64::from(width))),
             width,
             dy: single(self.up * (-2.0 * half_height / f64::from(height))),

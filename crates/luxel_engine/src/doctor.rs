@@ -21,6 +21,8 @@ pub struct Diagnosis {
     pub because: String,
     /// What the best adapter's driver does to floating-point numbers.
     pub numerics: Option<NumericsReport>,
+    /// Of 65,536 rays at vertices and edges of a closed mesh, those that slipped through on the best adapter.
+    pub watertight_misses: Option<u32>,
     /// What the kernels rely on and the driver does not keep; empty on a sound machine.
     pub violations: Vec<String>,
     /// Why the numerics could not be measured.
@@ -29,7 +31,10 @@ pub struct Diagnosis {
 
 /// Examines the machine: adapters, the choice of a backend, numerics.
 pub fn examine() -> Diagnosis {
-    let probed = probe();
+    let (numerics, misses, error) = match probe() {
+        Ok((numerics, misses)) => (Some(numerics), Some(misses), None),
+        Err(error) => (None, None, Some(error.to_string())),
+    };
     let (backend, device, because) = chosen();
     Diagnosis {
         threads: std::thread::available_parallelism().map_or(1, usize::from),
@@ -37,15 +42,24 @@ pub fn examine() -> Diagnosis {
         backend,
         device,
         because,
-        violations: probed.as_ref().map_or(Vec::new(), NumericsReport::violations),
-        numerics_error: probed.as_ref().err().map(ToString::to_string),
-        numerics: probed.ok(),
+        violations: violations(numerics.as_ref(), misses),
+        watertight_misses: misses,
+        numerics_error: error,
+        numerics,
     }
 }
 
-fn probe() -> Result<NumericsReport, GpuError> {
+fn probe() -> Result<(NumericsReport, u32), GpuError> {
     let request = GpuRequest { software: SoftwarePolicy::Allow, ..GpuRequest::from_env() };
-    luxel_render::numerics(&Gpu::open(&request)?)
+    let gpu = Gpu::open(&request)?;
+    Ok((luxel_render::numerics(&gpu)?, luxel_render::watertight_misses(&gpu)?))
+}
+
+fn violations(numerics: Option<&NumericsReport>, misses: Option<u32>) -> Vec<String> {
+    let leak = misses.filter(|misses| *misses > 0).map(|misses| {
+        format!("{misses} of {} rays slip through a closed mesh", luxel_render::WATERTIGHT_RAYS)
+    });
+    numerics.map_or(Vec::new(), NumericsReport::violations).into_iter().chain(leak).collect()
 }
 
 fn chosen() -> (&'static str, String, String) {
@@ -72,6 +86,10 @@ impl fmt::Display for Diagnosis {
             (Some(report), _) => writeln!(f, "numerics of the best adapter\n{report}")?,
             (None, Some(error)) => writeln!(f, "numerics  not measured: {error}")?,
             (None, None) => {}
+        }
+        if let Some(misses) = self.watertight_misses {
+            let rays = luxel_render::WATERTIGHT_RAYS;
+            writeln!(f, "closed mesh: {misses} of {rays} rays at vertices and edges slip through")?;
         }
         for violation in &self.violations {
             writeln!(f, "VIOLATED  {violation}")?;

@@ -13,7 +13,7 @@ shared_struct! {
         pub lens_radius: f32,
         /// Direction to the upper left corner of the film.
         pub corner: [f32; 3],
-        /// Distance along the optical axis that is sharp, in metres.
+        /// Distance along the optical axis that is sharp, in metres; 1 for a pinhole.
         pub focus_distance: f32,
         /// Step from a pixel to the next on its right.
         pub dx: [f32; 3],

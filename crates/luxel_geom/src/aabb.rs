@@ -86,10 +86,7 @@ impl<R: Real> Aabb<R> {
     pub fn interval(&self, ray: &SlabRay<R>) -> Interval<R> {
         let t0 = (self.lo - ray.origin) * ray.inv_direction;
         let t1 = (self.hi - ray.origin) * ray.inv_direction;
-        Interval {
-            enter: t0.min(t1).max_element(),
-            exit: t0.max(t1).min_element() * R::from_f32(FAR_PAD),
-        }
+        Interval { enter: t0.min(t1).max_element(), exit: t0.max(t1).min_element() * R::from_f32(FAR_PAD) }
     }
 }
 

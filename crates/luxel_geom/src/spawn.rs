@@ -8,7 +8,12 @@ use crate::{Real, Vector};
 ///
 /// `normal` is the unit geometric normal, `error` the bound on each component of `point`.
 #[inline]
-pub fn offset_origin<R: Real>(point: R::Vec3, error: R::Vec3, normal: R::Vec3, direction: R::Vec3) -> R::Vec3 {
+pub fn offset_origin<R: Real>(
+    point: R::Vec3,
+    error: R::Vec3,
+    normal: R::Vec3,
+    direction: R::Vec3,
+) -> R::Vec3 {
     let reach = normal.abs().dot(error);
     let side = if direction.dot(normal) < R::ZERO { -normal } else { normal };
     let away = |axis: usize| {

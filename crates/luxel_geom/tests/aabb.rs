@@ -29,8 +29,14 @@ fn corner(p: [i32; 3]) -> Vec3 {
 
 #[test]
 fn t06_lattice_rays_against_whole_numbers() {
-    let boxes = [([16, 16, 16], [17, 17, 17]), ([0, 0, 0], [32, 32, 32]), ([8, 0, 31], [24, 1, 32]), ([5, 9, 3], [6, 9, 30])];
-    let exact: Vec<Aabb<f32>> = boxes.iter().map(|&(lo, hi)| Aabb { lo: corner(lo), hi: corner(hi) }).collect();
+    let boxes = [
+        ([16, 16, 16], [17, 17, 17]),
+        ([0, 0, 0], [32, 32, 32]),
+        ([8, 0, 31], [24, 1, 32]),
+        ([5, 9, 3], [6, 9, 30]),
+    ];
+    let exact: Vec<Aabb<f32>> =
+        boxes.iter().map(|&(lo, hi)| Aabb { lo: corner(lo), hi: corner(hi) }).collect();
     let stored: Vec<Aabb<f32>> = exact.iter().map(Aabb::outset).collect();
     let lattice = (0..33i32.pow(3)).map(|i| [i % 33, i / 33 % 33, i / (33 * 33)]);
     for (point, direction) in lattice.flat_map(|p| rays::lattice_directions().map(move |d| (p, d))) {
@@ -39,7 +45,11 @@ fn t06_lattice_rays_against_whole_numbers() {
             let ray = SlabRay::new(&Ray::<f32>::new(corner(point), along));
             for (bounds, &(lo, hi)) in stored.iter().zip(&boxes) {
                 let overlaps = bounds.interval(&ray).overlaps(0.0, FAR);
-                assert_eq!(overlaps, touches(point, direction, lo, hi), "{point:?} {direction:?} {lo:?} {hi:?}");
+                assert_eq!(
+                    overlaps,
+                    touches(point, direction, lo, hi),
+                    "{point:?} {direction:?} {lo:?} {hi:?}"
+                );
             }
         }
     }
@@ -54,7 +64,8 @@ fn touches_in_doubles(bounds: &Aabb<f32>, ray: &Ray<f32>) -> bool {
 
 /// The same without outset and padding: what rays slip past.
 fn touches_unpadded(bounds: &Aabb<f32>, ray: &SlabRay<f32>) -> bool {
-    let (t0, t1) = ((bounds.lo - ray.origin) * ray.inv_direction, (bounds.hi - ray.origin) * ray.inv_direction);
+    let (t0, t1) =
+        ((bounds.lo - ray.origin) * ray.inv_direction, (bounds.hi - ray.origin) * ray.inv_direction);
     t0.min(t1).max_element().max(0.0) <= t0.max(t1).min_element()
 }
 

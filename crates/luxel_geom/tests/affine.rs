@@ -36,10 +36,12 @@ fn point(reach: f64) -> impl Strategy<Value = DVec3> {
 
 fn map() -> impl Strategy<Value = DAffine3> {
     let angle = || -3.0..3.0;
-    ([-3.0..3.0, -3.0..3.0, -3.0..3.0], angle(), angle(), angle(), point(100.0)).prop_map(|(scale, a, b, c, to)| {
-        let scale = DVec3::from(scale).exp2();
-        DAffine3::from_scale_rotation_translation(scale, DQuat::from_euler(EulerRot::XYZ, a, b, c), to)
-    })
+    ([-3.0..3.0, -3.0..3.0, -3.0..3.0], angle(), angle(), angle(), point(100.0)).prop_map(
+        |(scale, a, b, c, to)| {
+            let scale = DVec3::from(scale).exp2();
+            DAffine3::from_scale_rotation_translation(scale, DQuat::from_euler(EulerRot::XYZ, a, b, c), to)
+        },
+    )
 }
 
 /// The map that a single-precision one stands for, as it is stored.

@@ -35,7 +35,9 @@ fn l10_frames_are_orthonormal() {
 
 #[test]
 fn l10_frames_along_the_axes_are_exact() {
-    for (x, y, z) in [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (-0.0, -0.0, -1.0), (1.0, 0.0, -0.0), (0.0, -1.0, 0.0)] {
+    for (x, y, z) in
+        [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (-0.0, -0.0, -1.0), (1.0, 0.0, -0.0), (0.0, -1.0, 0.0)]
+    {
         let frame = Frame::<f32>::around(Vec3::new(x, y, z));
         assert_eq!(defect(&frame), 0.0, "{frame:?}");
         assert_eq!(frame.s.cross(frame.t).dot(frame.n), 1.0, "not right-handed: {frame:?}");

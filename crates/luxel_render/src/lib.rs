@@ -12,9 +12,11 @@ mod graph;
 mod kernels;
 mod nodes;
 mod tracer;
+mod watertight;
 
 pub use gpu_film::GpuFilm;
 pub use gpu_scene::GpuScene;
 pub use graph::{GraphSet, NODES, NodeRow, schedule_in_order};
 pub use kernels::{KERNELS, KernelRow, conditions};
 pub use tracer::{GpuTracer, numerics};
+pub use watertight::{WATERTIGHT_RAYS, watertight_misses};

@@ -55,7 +55,7 @@ const ENTITY_MISTAKES: &[(&str, &str, &str)] = &[
     (
         "sphere, mesh and voxels",
         "sphere: (radius: 1), mesh: 1",
-        "at most once",
+        "exclude one another",
     ),
     (
         "transform.translation",
@@ -105,7 +105,7 @@ const ENTITY_MISTAKES: &[(&str, &str, &str)] = &[
     (
         "transform.rotation, rotation_degrees and look_at",
         "transform: (look_at: (0, 0, 1), rotation_degrees: (0, 0, 0))",
-        "at most once",
+        "exclude one another",
     ),
     (
         "material.emission",
@@ -160,7 +160,7 @@ const ENTITY_MISTAKES: &[(&str, &str, &str)] = &[
     (
         "camera.vertical_fov and vertical_fov_degrees",
         "camera: (vertical_fov: 1, vertical_fov_degrees: 50)",
-        "at most once",
+        "exclude one another",
     ),
     (
         "camera.lens_radius",

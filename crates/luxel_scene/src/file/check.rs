@@ -72,7 +72,10 @@ fn radiance(field: &str, value: Vec3) -> Checked {
 
 fn at_most_one(fields: &str, given: &[bool]) -> Checked {
     let count = given.iter().filter(|&&given| given).count();
-    require(count <= 1, fields, "given at most once together", count)
+    if count <= 1 {
+        return Ok(());
+    }
+    Err(Flaw { field: fields.to_owned(), message: format!("exclude one another, but {count} are given") })
 }
 
 /// The numbers of a file that belong to no entity, with the section they are in.

@@ -1,0 +1,115 @@
+//! What an edit may rebuild: asserted from the counters of the bake that followed it.
+use glam::DVec3;
+use luxel_bake::BakeCounters;
+use luxel_flat::{FlatScene, Instance};
+
+use crate::studio::{Action, Edit, Kind};
+
+/// Octree nodes that one sphere may touch: its way up to the root and down again, and blocks of children.
+const MOST_NODES: u64 = 200;
+
+/// The cost of an edit together with what follows from two snapshots: what differs must have been written, and
+/// nothing else.
+fn with_snapshots(cost: BakeCounters, before: &FlatScene, after: &FlatScene) -> BakeCounters {
+    let old = |slot: usize| before.instances.as_slice().get(slot).copied().unwrap_or_default();
+    let new = after.instances.as_slice().iter().enumerate();
+    BakeCounters {
+        instances_written: new.filter(|(slot, new)| is_live(new) && old(*slot) != **new).count() as u64,
+        tlas_builds: u64::from(boxes(before) != boxes(after)),
+        anchors_moved: u64::from(before.anchor != after.anchor),
+        features_changed: u64::from(before.features != after.features),
+        publishes: 1,
+        ..cost
+    }
+}
+
+fn is_live(instance: &Instance) -> bool {
+    instance.node_count > 0
+}
+
+/// What the TLAS stands over: slots and boxes.
+fn boxes(scene: &FlatScene) -> Vec<(usize, [f32; 3], [f32; 3])> {
+    let live = scene.instances.as_slice().iter().enumerate().filter(|(_, instance)| is_live(instance));
+    live.map(|(slot, instance)| (slot, instance.lo, instance.hi)).collect()
+}
+
+/// The cost of an edit together with what it does to the octree: an edit of that, unless the root cell is another now.
+fn with_octree(edit: &Edit, root_changed: bool) -> BakeCounters {
+    match (edit.kind, edit.action) {
+        (Kind::Sphere, Action::Material) | (Kind::Mesh | Kind::Volume, _) => edit.cost,
+        _ if root_changed => BakeCounters { octree_rebuilds: 1, ..edit.cost },
+        (_, Action::Add) => BakeCounters { octree_inserts: 1, ..edit.cost },
+        (_, Action::Remove) => BakeCounters { octree_removes: 1, ..edit.cost },
+        _ => BakeCounters { octree_updates: 1, ..edit.cost },
+    }
+}
+
+/// The sphere cloud's root cell, centre and half edge: a pure function of the spheres (`luxel_bake::lattice`). The
+/// smallest power of two that the cloud fits in, on a lattice of that step.
+pub(crate) fn root_cell(balls: impl Iterator<Item = (DVec3, f64)>) -> (DVec3, f64) {
+    let all = balls.map(|(center, radius)| (center, center, radius));
+    let all = all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1), a.2.max(b.2)));
+    let Some((lo, hi, reach)) = all else { return (DVec3::ZERO, 1.0) };
+    let size = (hi - lo).max_element() + 2.0 * reach;
+    let step = size.log2().ceil().exp2();
+    let center = lo + (hi - lo) * 0.5;
+    ((center / step + 0.5).floor() * step, step)
+}
+
+/// Asserts that a bake did the work of its edit, and nothing else.
+#[track_caller]
+pub(crate) fn check(
+    number: u32,
+    edit: &Edit,
+    work: &BakeCounters,
+    before: &FlatScene,
+    after: &FlatScene,
+    root_changed: bool,
+) {
+    let context = format!("edit {number}, {:?} {:?}", edit.action, edit.kind);
+    let expected = with_snapshots(with_octree(edit, root_changed), before, after);
+    // A parameter's slot may hold the right radiance from an earlier time.
+    let expected = BakeCounters {
+        octree_nodes_touched: work.octree_nodes_touched,
+        params_written: work.params_written,
+        ..expected
+    };
+    assert_eq!(*work, expected, "{context}");
+    assert!(work.params_written <= edit.cost.params_written, "{context}: {work:?}");
+    let edits_octree = expected.octree_inserts + expected.octree_removes + expected.octree_updates;
+    let most_nodes = if expected.octree_rebuilds > 0 { u64::MAX } else { edits_octree * MOST_NODES };
+    assert!(work.octree_nodes_touched <= most_nodes, "{context}: {work:?}");
+    check_promises(&context, edit, work);
+}
+
+/// The promises of the issue in its own words; they must not depend on what the snapshots say.
+fn check_promises(context: &str, edit: &Edit, work: &BakeCounters) {
+    let structures = work.blas_built + work.blas_freed + work.svo_built + work.svo_freed;
+    let octree = work.octree_inserts + work.octree_removes + work.octree_updates + work.octree_rebuilds;
+    let moves_origin = work.anchors_moved > 0;
+    match (edit.kind, edit.action) {
+        (_, Action::Material) => {
+            assert_eq!(
+                (work.tlas_builds, structures, octree, work.transforms_propagated),
+                (0, 0, 0, 0),
+                "{context}"
+            );
+            let records = if edit.kind == Kind::Volume { 0..=8 } else { 1..=1 };
+            assert!(records.contains(&work.materials_written), "{context}: {work:?}");
+        }
+        (Kind::Mesh | Kind::Volume, Action::Move | Action::Scale) => {
+            assert_eq!(
+                (work.tlas_builds, structures, octree, work.materials_written),
+                (1, 0, 0, 0),
+                "{context}"
+            );
+            assert!(work.instances_written == 1 || moves_origin, "{context}: {work:?}");
+        }
+        (Kind::Mesh | Kind::Volume, _) => assert_eq!((work.tlas_builds, octree), (1, 0), "{context}"),
+        (Kind::Sphere, _) => {
+            assert_eq!((structures, octree), (0, 1), "{context}");
+            // The cloud's own record, when its box or its number of nodes is another.
+            assert!(work.instances_written <= 1 || moves_origin, "{context}: {work:?}");
+        }
+    }
+}
