@@ -31,8 +31,7 @@ pub(crate) fn trace_naive(scene: &FlatScene, rays: &[Ray<f32>]) -> Vec<Option<Se
 /// Asserts that two ways to trace the same rays see the same.
 #[track_caller]
 pub(crate) fn assert_same(what: &str, rays: &[Ray<f32>], a: &[Option<Seen>], b: &[Option<Seen>]) {
-    assert_eq!((a.len(), b.len()), (rays.len(), rays.len()));
-    let differing: Vec<usize> = (0..rays.len()).filter(|i| a[*i] != b[*i]).collect();
+    let differing = differing(a, b);
     let text = |i: &usize| format!("ray {i}: {:?}\n  {:?}\n  {:?}", rays[*i], a[*i], b[*i]);
     let some: Vec<String> = differing.iter().take(3).map(text).collect();
     assert!(
@@ -42,6 +41,12 @@ pub(crate) fn assert_same(what: &str, rays: &[Ray<f32>], a: &[Option<Seen>], b: 
         rays.len(),
         some.join("\n")
     );
+}
+
+/// Which rays see different things in two traces.
+pub(crate) fn differing(a: &[Option<Seen>], b: &[Option<Seen>]) -> Vec<usize> {
+    assert_eq!(a.len(), b.len());
+    (0..a.len()).filter(|i| a[*i] != b[*i]).collect()
 }
 
 fn seen(scene: &FlatScene, hit: &Hit<f32>) -> Seen {

@@ -14,6 +14,9 @@ struct Target {
 pub(crate) fn mixed(scene: &FlatScene, seed: u32, count: u32) -> Vec<Ray<f32>> {
     let mut random = Random::new(seed);
     let live: Vec<&Instance> = scene.instances.as_slice().iter().filter(|i| i.node_count > 0).collect();
+    if live.is_empty() {
+        return rays::random(seed, count, 2000.0);
+    }
     let anywhere = rays::random(seed ^ 1, count.div_ceil(5), 2000.0);
     let ray = |i: u32| {
         let target = target(scene, live[random.below(live.len() as u32) as usize], &mut random);
@@ -27,7 +30,8 @@ pub(crate) fn mixed(scene: &FlatScene, seed: u32, count: u32) -> Vec<Ray<f32>> {
                 Ray::new(ray.origin, ray.direction * random.log_between(1e-3, 1e3))
             }
             3 => Ray::new(target.point + random.point(0.5) * target.size, random.direction()),
-            _ => rays::along_axes_through(target.point, distance, i % 2 == 0)[random.below(6) as usize],
+            _ => rays::along_axes_through(target.point, distance, i.is_multiple_of(2))
+                [random.below(6) as usize],
         }
     };
     (0..count).map(ray).collect()

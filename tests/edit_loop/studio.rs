@@ -111,6 +111,19 @@ impl Studio {
         self.objects.iter().filter(|object| object.kind == kind).count()
     }
 
+    /// Where a camera stands that looks at a random object from somewhere near it, measured by its size.
+    pub(crate) fn view(&mut self) -> Transform {
+        let object = self.objects[self.random.below(self.objects.len() as u32) as usize];
+        let place = *self.world.get::<Transform>(object.entity).unwrap();
+        let radius = self.world.get::<Sphere>(object.entity).map_or(1.0, |sphere| sphere.radius);
+        let distance =
+            place.scale.abs().max_element() * radius * f64::from(self.random.log_between(1.5, 30.0));
+        Transform::looking_at(
+            place.translation + self.random.direction().as_dvec3() * distance,
+            place.translation,
+        )
+    }
+
     /// Every sphere in world space: centre and radius.
     pub(crate) fn balls(&self) -> impl Iterator<Item = (DVec3, f64)> {
         let spheres = self.objects.iter().filter(|object| object.kind == Kind::Sphere);
@@ -209,7 +222,7 @@ impl Studio {
     /// Another material; a volume may also get its palette back.
     fn paint(&mut self, object: Object) -> BakeCounters {
         let mut entity = self.world.entity_mut(object.entity);
-        if object.kind == Kind::Volume && entity.contains::<Material>() && self.edits % 2 == 0 {
+        if object.kind == Kind::Volume && entity.contains::<Material>() && self.edits.is_multiple_of(2) {
             entity.remove::<Material>();
             return BakeCounters::default();
         }

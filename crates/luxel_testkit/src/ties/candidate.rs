@@ -71,10 +71,9 @@ pub(super) struct Candidate {
     pub(super) is_sure: bool,
 }
 
-/// Where a primitive is met: the parameter, by how much it may be off, and whether it is met without doubt.
+/// Where a primitive is met: the parameters that a tracer may compute, and whether it finds it without doubt.
 struct Met {
-    t: f64,
-    slack: f64,
+    range: [f64; 2],
     is_sure: bool,
 }
 
@@ -115,9 +114,10 @@ impl Primitive {
                 (ulps, meet_box(&ray.ray, corners, ulps)?)
             }
         };
-        let slack = met.slack.max(0.5 * SAME_DEPTH * met.t);
-        let (lo, hi) = (met.t - slack, met.t + slack);
-        (met.t > 0.0).then_some(Candidate { answer, primitive: *self, ulps, lo, hi, is_sure: met.is_sure })
+        let [lo, hi] = met.range;
+        let slack = 0.5 * SAME_DEPTH * hi;
+        let (lo, hi) = (lo - slack, hi + slack);
+        (hi > 0.0).then_some(Candidate { answer, primitive: *self, ulps, lo, hi, is_sure: met.is_sure })
     }
 }
 
@@ -132,11 +132,14 @@ fn meet_sphere(ray: &SlabRay<f64>, center: DVec3, radius: f64, ulps: DVec3) -> O
         return None;
     }
     let half_chord = (margin * (radius + miss)).max(0.0).sqrt();
-    let half = half_chord / length;
-    let t = if t_closest > half { t_closest - half } else { t_closest + half };
     // Where the ray meets the sphere steeply the first is the smaller, where it is nearly a tangent the second.
-    let along = (blur * radius / half_chord.max(f64::MIN_POSITIVE)).min((4.0 * blur * radius).sqrt());
-    Some(Met { t, slack: along / length, is_sure: margin > blur })
+    let along =
+        (blur * radius / half_chord.max(f64::MIN_POSITIVE)).min((4.0 * blur * radius).sqrt()).max(blur);
+    let (half, slack) = (half_chord / length, along / length);
+    let around = |t: f64| [t - slack, t + slack];
+    let exit = around(t_closest + half);
+    let range = first_positive(around(t_closest - half), exit);
+    Some(Met { range, is_sure: margin > blur && exit[0] > 0.0 })
 }
 
 fn meet_triangle(ray: &SlabRay<f64>, corners: &[DVec3; 3], ulps: DVec3) -> Option<Met> {
@@ -156,15 +159,13 @@ fn meet_triangle(ray: &SlabRay<f64>, corners: &[DVec3; 3], ulps: DVec3) -> Optio
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     let steepness = normal.dot(direction);
     let (t, slack) = if steepness == 0.0 {
-        (0.5 * (first + last), last - first)
+        (0.5 * (first + last), f64::MAX)
     } else {
         (normal.dot(corners[0]) / steepness, BORDER_ULPS * normal.length() / steepness.abs())
     };
-    Some(Met {
-        t: t.clamp(first, last),
-        slack: slack.min(last - first),
-        is_sure: is_inside && border > BORDER_ULPS,
-    })
+    let (t, slack) = (t.clamp(first, last), slack.min(last - first + BORDER_ULPS / direction.length()));
+    let range = [t - slack, t + slack];
+    Some(Met { range, is_sure: is_inside && border > BORDER_ULPS && range[0] > 0.0 })
 }
 
 fn meet_box(ray: &SlabRay<f64>, [lo, hi]: [DVec3; 2], ulps: DVec3) -> Option<Met> {
@@ -172,13 +173,28 @@ fn meet_box(ray: &SlabRay<f64>, [lo, hi]: [DVec3; 2], ulps: DVec3) -> Option<Met
     let met = |lo: DVec3, hi: DVec3| {
         let (t0, t1) = ((lo - ray.origin) * ray.inv_direction, (hi - ray.origin) * ray.inv_direction);
         let (enter, exit) = (t0.min(t1).max_element(), t0.max(t1).min_element());
-        (enter <= exit && exit > 0.0).then_some(if enter > 0.0 { enter } else { exit })
+        (enter <= exit).then_some([enter, exit])
     };
     let grown = met(lo - blur, hi + blur)?;
     let shrunk = (lo + blur).cmple(hi - blur).all().then(|| met(lo + blur, hi - blur)).flatten();
-    let t = met(lo, hi).unwrap_or(grown);
-    let slack = (grown - t).abs().max((shrunk.unwrap_or(t) - t).abs());
-    Some(Met { t, slack, is_sure: shrunk.is_some() })
+    Some(match shrunk {
+        None => Met { range: grown, is_sure: false },
+        Some(shrunk) => {
+            let range = first_positive([grown[0], shrunk[0]], [shrunk[1], grown[1]]);
+            Met { range, is_sure: shrunk[1] > 0.0 }
+        }
+    })
+}
+
+/// Where the first positive one of two parameters is, of each of which only a range is known.
+fn first_positive(enter: [f64; 2], exit: [f64; 2]) -> [f64; 2] {
+    if enter[0] > 0.0 {
+        enter
+    } else if enter[1] > 0.0 {
+        [enter[0], exit[1]]
+    } else {
+        exit
+    }
 }
 
 /// Distance of the origin from the segment between two points.
