@@ -19,7 +19,8 @@ const FRAMES: u32 = 30;
 
 fn main() -> anyhow::Result<()> {
     let quick = std::env::args().any(|arg| arg == "--quick");
-    let out = std::env::args().skip_while(|arg| arg != "--out").nth(1).map_or_else(PathBuf::new, PathBuf::from);
+    let out =
+        std::env::args().skip_while(|arg| arg != "--out").nth(1).map_or_else(PathBuf::new, PathBuf::from);
     let mut engine = Engine::load("assets/showcase.ron".as_ref())?;
     engine.bake()?;
 

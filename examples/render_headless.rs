@@ -42,12 +42,8 @@ struct Options {
 
 impl Options {
     fn from_args() -> Self {
-        let mut options = Self {
-            scene: "assets/showcase.ron".into(),
-            gpu: false,
-            quick: false,
-            out: ".".into(),
-        };
+        let mut options =
+            Self { scene: "assets/showcase.ron".into(), gpu: false, quick: false, out: ".".into() };
         let mut args = std::env::args().skip(1);
         while let Some(arg) = args.next() {
             match arg.as_str() {

@@ -1,6 +1,6 @@
 //! The GPU fails and the job does not: a lost device, a scene that does not fit, a graph in another order; and the
 //! resolve node shows what the film's own display shows.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 #[path = "support/asset.rs"]
 mod asset;
 #[path = "support/traced.rs"]
@@ -42,7 +42,11 @@ fn a_device_lost_in_mid_job_leaves_the_job_to_the_cpu() {
     });
     let rendered = rendered.unwrap();
 
-    assert!(matches!(events[0], RenderEvent::Progress(p) if p.fraction < 1.0), "the GPU was done: {:?}", events[0]);
+    assert!(
+        matches!(events[0], RenderEvent::Progress(p) if p.fraction < 1.0),
+        "the GPU was done: {:?}",
+        events[0]
+    );
     let notices: Vec<_> = events.iter().filter(|event| matches!(event, RenderEvent::Notice(_))).collect();
     assert_eq!(notices.len(), 1, "{notices:?}");
     assert_eq!(rendered.notices.len(), 1);

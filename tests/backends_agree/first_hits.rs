@@ -61,13 +61,22 @@ fn compare(name: &str) {
     let gpu = answers(&trace(&mut gpu_tracer(&gpu), &request, 1).film);
     let different: Vec<usize> = (0..cpu.len()).filter(|pixel| cpu[*pixel] != gpu[*pixel]).collect();
     let equal = 1.0 - different.len() as f64 / cpu.len() as f64;
-    println!("{name}: {:.4} % of {} first hits are equal, {} differ", 100.0 * equal, cpu.len(), different.len());
+    println!(
+        "{name}: {:.4} % of {} first hits are equal, {} differ",
+        100.0 * equal,
+        cpu.len(),
+        different.len()
+    );
     assert!(cpu.iter().any(Option::is_some), "{name}: nothing is seen");
     assert!(equal >= MIN_EQUAL, "{name}: {} of {} first hits differ", different.len(), cpu.len());
     let judge = Judge::new(&scene);
     for pixel in different {
         let (ray, pair) = (camera_ray(&scene, pixel), [cpu[pixel], gpu[pixel]]);
-        assert!(judge.explains(&ray, pair), "{name}, pixel {pixel}: {pair:?} is no tie\n{}", judge.describe(&ray));
+        assert!(
+            judge.explains(&ray, pair),
+            "{name}, pixel {pixel}: {pair:?} is no tie\n{}",
+            judge.describe(&ray)
+        );
     }
 }
 

@@ -35,7 +35,10 @@ fn tile_means_agree_and_the_test_sees_what_does_not() {
     let gpu = batches(&mut engine, &mut GpuTracer::new(&gpu, SlicePolicy::HEADLESS).unwrap(), 0x6b00_0000);
     let worst = worst_ratio(&cpu, &gpu);
     let tests = cpu[0].len();
-    println!("largest |t| is {worst:.3} of its limit; {tests} tests, limit at 62 dof {:.2}", limit(62.0, tests));
+    println!(
+        "largest |t| is {worst:.3} of its limit; {tests} tests, limit at 62 dof {:.2}",
+        limit(62.0, tests)
+    );
     assert!(worst <= 1.0, "a tile's means differ: |t| is {worst} of its limit");
 
     let changed = |change: fn(usize, &Batch) -> f64| -> Vec<Batch> {

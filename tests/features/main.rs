@@ -1,7 +1,7 @@
 //! Only the effects a scene calls for (design.md §7), for every row of `FEATURES`: a scene without the row links
 //! nothing of it, runs no node of it, counts zero on both backends, and its picture is the one that the code with
 //! all features makes: bit for bit on the CPU, path by path on the GPU.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod scene;
 #[path = "../support/traced.rs"]
 mod traced;
@@ -102,7 +102,11 @@ fn on_the_gpu_it_runs_nothing_and_the_picture_is_that_of_all_features() {
         let share = agreeing_paths(&own.film, &all.film);
         let tiles = worst_tile(&own.film, &all.film);
         let bits = if own.film.pixels == all.film.pixels { "equal" } else { "different" };
-        println!("{:13} {:.4} % of paths agree, tile means to {tiles:.1e}, bits {bits}", row.name, 100.0 * share);
+        println!(
+            "{:13} {:.4} % of paths agree, tile means to {tiles:.1e}, bits {bits}",
+            row.name,
+            100.0 * share
+        );
         assert!(share >= MIN_AGREEING, "{}: {share} of paths agree", row.name);
         assert!(tiles <= SAME_TILE, "{}: a tile's mean differs by {tiles}", row.name);
     }
@@ -134,7 +138,11 @@ fn check_counters(stats: &TraceStats, backend: &str, check: impl Fn(&FeatureRow,
         }
     }
     assert!(stats.counters.rays() > 0, "{backend} traced nothing");
-    assert_eq!(stats.counters[Counter::TraversalCaps] + stats.counters[Counter::NonFiniteSamples], 0, "{backend}");
+    assert_eq!(
+        stats.counters[Counter::TraversalCaps] + stats.counters[Counter::NonFiniteSamples],
+        0,
+        "{backend}"
+    );
 }
 
 /// The row's counters are zero; of the other rows, whatever the scene holds.
@@ -160,7 +168,9 @@ fn agreeing_paths(a: &Film, b: &Film) -> f64 {
     let near = |(x, y): (f32, f32)| (x - y).abs() <= SAME_RADIANCE * x.abs().max(y.abs());
     let radiance = a.beauty().into_iter().zip(b.beauty());
     let same_radiance = radiance.map(|(x, y)| x.into_iter().zip(y).all(near));
-    let ids = |film: &Film, pixel: usize| film.aovs.as_ref().map(|aovs| (aovs[pixel].instance, aovs[pixel].primitive));
+    let ids = |film: &Film, pixel: usize| {
+        film.aovs.as_ref().map(|aovs| (aovs[pixel].instance, aovs[pixel].primitive))
+    };
     let both_have_ids = a.aovs.is_some() && b.aovs.is_some();
     let same_ids = |pixel| !both_have_ids || ids(a, pixel) == ids(b, pixel);
     let agreeing = same_radiance.enumerate().filter(|(pixel, same)| *same && same_ids(*pixel)).count();

@@ -3,8 +3,8 @@ use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
 use luxel_flat::Feature;
 use luxel_scene::{
-    Assets, Camera, Environment, Material, MeshAsset, MeshInstance, MeshSource, RenderSettings, Sphere, Surface,
-    Transform, VolumeAsset, VolumeSource, VoxelVolume,
+    Assets, Camera, Environment, Material, MeshAsset, MeshInstance, MeshSource, RenderSettings, Sphere,
+    Surface, Transform, VolumeAsset, VolumeSource, VoxelVolume,
 };
 
 const SIZE: [u32; 2] = [192, 108];
@@ -43,8 +43,7 @@ fn spawn_objects(world: &mut World) {
         Material::lamp(Vec3::new(3.0, 2.5, 2.0)),
     ];
     let mut assets = world.resource_mut::<Assets>();
-    let mesh =
-        assets.insert_mesh(MeshAsset::from_source(MeshSource::Icosphere { subdivisions: 1 }).unwrap());
+    let mesh = assets.insert_mesh(MeshAsset::from_source(MeshSource::Icosphere { subdivisions: 1 }).unwrap());
     let volume = assets.insert_volume(VolumeAsset::from_source(VolumeSource::Lantern { size: 5 }).unwrap());
     for (column, material) in materials.into_iter().enumerate() {
         let at = |row: f64| DVec3::new(1.6 * column as f64 - 2.4, 1.5 * row, 0.0);

@@ -8,8 +8,9 @@ use luxel_engine::Engine;
 use luxel_film::Film;
 use luxel_film::tracer::{TraceRequest, Tracer};
 use luxel_scene::{
-    ActiveCamera, AssetId, Assets, Camera, Dropped, Environment, Material, MeshAsset, MeshInstance, MeshSource,
-    RenderSettings, Sphere, Transform, TriangleMesh, VolumeAsset, VolumeSource, Voxel, VoxelGrid, VoxelVolume,
+    ActiveCamera, AssetId, Assets, Camera, Dropped, Environment, Material, MeshAsset, MeshInstance,
+    MeshSource, RenderSettings, Sphere, Transform, TriangleMesh, VolumeAsset, VolumeSource, Voxel, VoxelGrid,
+    VoxelVolume,
 };
 
 /// Cells along an edge of the voxel room; its walls are one cell thick.
@@ -41,7 +42,12 @@ impl Room {
         let camera = Camera { vertical_fov: 2.0, ..Camera::default() };
         let camera = luxel_scene::spawn(&mut world, (camera, ActiveCamera, Transform::default()));
         world.insert_resource(Environment::Constant(Vec3::splat(OUTSIDE)));
-        world.insert_resource(RenderSettings { width: 16, height: 16, roulette_depth: 1000, ..RenderSettings::default() });
+        world.insert_resource(RenderSettings {
+            width: 16,
+            height: 16,
+            roulette_depth: 1000,
+            ..RenderSettings::default()
+        });
         let engine = Engine::over(world, Path::new("(furnace)")).unwrap();
         Self { engine, walls: Vec::new(), camera }
     }
@@ -80,7 +86,8 @@ impl Room {
     /// Adds walls that are a mesh, in place.
     pub(crate) fn build_mesh(&mut self, mesh: MeshAsset) {
         let mesh: AssetId = self.engine.world.resource_mut::<Assets>().insert_mesh(mesh);
-        let entity = luxel_scene::spawn(&mut self.engine.world, (MeshInstance { mesh }, Transform::default()));
+        let entity =
+            luxel_scene::spawn(&mut self.engine.world, (MeshInstance { mesh }, Transform::default()));
         self.walls.push(entity);
     }
 

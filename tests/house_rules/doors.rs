@@ -54,11 +54,7 @@ struct Door {
 }
 
 fn doors() -> Vec<Door> {
-    let metadata = MetadataCommand::new()
-        .manifest_path(root().join("Cargo.toml"))
-        .no_deps()
-        .exec()
-        .unwrap();
+    let metadata = MetadataCommand::new().manifest_path(root().join("Cargo.toml")).no_deps().exec().unwrap();
     let of_package = |package: cargo_metadata::Package| {
         let from = package.name.to_string();
         package.dependencies.into_iter().map(move |to| Door {
@@ -71,23 +67,15 @@ fn doors() -> Vec<Door> {
 }
 
 fn forbidden_doors(doors: &[Door]) -> Vec<String> {
-    let counts = |door: &&Door| {
-        door.kind != DependencyKind::Development || door.from == DEV_DEPENDENCIES_COUNT
-    };
+    let counts =
+        |door: &&Door| door.kind != DependencyKind::Development || door.from == DEV_DEPENDENCIES_COUNT;
     let complaint = |door: &Door| format!("{} may not depend on {}", door.from, door.to);
-    doors
-        .iter()
-        .filter(counts)
-        .filter(|door| !is_allowed(door))
-        .map(complaint)
-        .collect()
+    doors.iter().filter(counts).filter(|door| !is_allowed(door)).map(complaint).collect()
 }
 
 fn is_allowed(door: &Door) -> bool {
     let room = ROOMS.iter().find(|room| room.name == door.from);
-    let family = GUARDED
-        .into_iter()
-        .find(|guarded| is_of_family(&door.to, guarded));
+    let family = GUARDED.into_iter().find(|guarded| is_of_family(&door.to, guarded));
     let is_room = door.to.starts_with("luxel") || door.to == "xtask";
     match room {
         None => false,
@@ -97,15 +85,13 @@ fn is_allowed(door: &Door) -> bool {
 }
 
 fn is_of_family(name: &str, guarded: &str) -> bool {
-    name.strip_prefix(guarded)
-        .is_some_and(|rest| rest.is_empty() || rest.starts_with(['-', '_']))
+    name.strip_prefix(guarded).is_some_and(|rest| rest.is_empty() || rest.starts_with(['-', '_']))
 }
 
 #[test]
 fn rooms_open_only_their_own_doors() {
     let doors = doors();
-    let is_there =
-        |from: &str, to: &str| doors.iter().any(|door| door.from == from && door.to == to);
+    let is_there = |from: &str, to: &str| doors.iter().any(|door| door.from == from && door.to == to);
     assert!(
         is_there("luxel_cpu", "luxel_flat") && is_there("luxel_gpu", "wgpu"),
         "the manifests were not read"
@@ -116,11 +102,7 @@ fn rooms_open_only_their_own_doors() {
 #[test]
 fn a_forbidden_door_is_found() {
     use DependencyKind::{Build, Development, Normal};
-    let door = |from: &str, to: &str, kind| Door {
-        from: from.to_owned(),
-        to: to.to_owned(),
-        kind,
-    };
+    let door = |from: &str, to: &str, kind| Door { from: from.to_owned(), to: to.to_owned(), kind };
     let forbidden = [
         door("luxel_cpu", "luxel_accel", Normal),
         door("luxel_accel", "bevy_ecs", Normal),
@@ -133,13 +115,7 @@ fn a_forbidden_door_is_found() {
         door("luxel_new_room", "luxel_geom", Normal),
     ];
     for door in forbidden {
-        assert_eq!(
-            forbidden_doors(std::slice::from_ref(&door)).len(),
-            1,
-            "{} → {}",
-            door.from,
-            door.to
-        );
+        assert_eq!(forbidden_doors(std::slice::from_ref(&door)).len(), 1, "{} → {}", door.from, door.to);
     }
     let allowed = [
         door("luxel_cpu", "luxel_accel", Development),

@@ -8,17 +8,9 @@ const MAX_RUST_LINES: usize = 600;
 const MAX_SHADER_LINES: usize = 300;
 
 fn too_long(path: &Path, text: &str) -> Vec<String> {
-    let limit = if path.extension().is_some_and(|e| e == "wesl") {
-        MAX_SHADER_LINES
-    } else {
-        MAX_RUST_LINES
-    };
+    let limit = if path.extension().is_some_and(|e| e == "wesl") { MAX_SHADER_LINES } else { MAX_RUST_LINES };
     let lines = text.lines().count();
-    if lines > limit {
-        vec![format!("{lines} lines, more than {limit}")]
-    } else {
-        Vec::new()
-    }
+    if lines > limit { vec![format!("{lines} lines, more than {limit}")] } else { Vec::new() }
 }
 
 #[test]
@@ -40,14 +32,7 @@ fn a_long_file_is_found() {
 }
 
 fn no_header(path: &Path, text: &str) -> Vec<String> {
-    let marker = if path
-        .extension()
-        .is_some_and(|extension| extension == "wesl")
-    {
-        "//"
-    } else {
-        "//!"
-    };
+    let marker = if path.extension().is_some_and(|extension| extension == "wesl") { "//" } else { "//!" };
     if text.starts_with(marker) {
         Vec::new()
     } else {
@@ -69,10 +54,6 @@ fn a_file_without_a_header_is_found() {
         ("a.wesl", "// A\n", 0),
         ("a.wesl", "fn a", 1),
     ] {
-        assert_eq!(
-            no_header(Path::new(name), text).len(),
-            missing,
-            "{name}: {text}"
-        );
+        assert_eq!(no_header(Path::new(name), text).len(), missing, "{name}: {text}");
     }
 }

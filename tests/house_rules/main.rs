@@ -13,9 +13,7 @@ mod words;
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
-    std::env::var_os("CARGO_MANIFEST_DIR")
-        .map(PathBuf::from)
-        .unwrap()
+    std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap()
 }
 
 /// Every file with one of the `extensions` under `folder`, sorted; nothing if the folder is not there.
@@ -39,10 +37,7 @@ fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
 /// Source files of the whole project.
 fn sources() -> Vec<PathBuf> {
     let folders = ["crates", "examples", "tests", "benches", "shaders"];
-    folders
-        .iter()
-        .flat_map(|folder| files(&root().join(folder), &["rs", "wesl"]))
-        .collect()
+    folders.iter().flat_map(|folder| files(&root().join(folder), &["rs", "wesl"])).collect()
 }
 
 /// What `rule` says about each file of `paths`, with the name of the file.
@@ -51,9 +46,7 @@ fn complaints(paths: &[PathBuf], rule: impl Fn(&Path, &str) -> Vec<String>) -> V
     let of_file = |path: &PathBuf| {
         let text = std::fs::read_to_string(path).unwrap();
         let name = path.strip_prefix(&root).unwrap_or(path).to_owned();
-        rule(&name, &text)
-            .into_iter()
-            .map(move |complaint| format!("{}: {complaint}", name.display()))
+        rule(&name, &text).into_iter().map(move |complaint| format!("{}: {complaint}", name.display()))
     };
     paths.iter().flat_map(of_file).collect()
 }

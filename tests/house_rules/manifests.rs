@@ -10,11 +10,7 @@ const SHARED_KEYS: [&str; 5] = ["version", "edition", "rust-version", "license",
 fn own_versions(_path: &Path, manifest: &str) -> Vec<String> {
     let mut section = "";
     let mut found = Vec::new();
-    for line in manifest
-        .lines()
-        .map(str::trim)
-        .filter(|line| !line.is_empty() && !line.starts_with('#'))
-    {
+    for line in manifest.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
         if line.starts_with('[') {
             section = line;
             continue;
@@ -34,9 +30,8 @@ fn own_versions(_path: &Path, manifest: &str) -> Vec<String> {
 
 fn manifests() -> Vec<PathBuf> {
     let crates = std::fs::read_dir(root().join("crates")).unwrap();
-    let of_crates = crates
-        .map(|entry| entry.unwrap().path().join("Cargo.toml"))
-        .filter(|path| path.is_file());
+    let of_crates =
+        crates.map(|entry| entry.unwrap().path().join("Cargo.toml")).filter(|path| path.is_file());
     of_crates.chain([root().join("Cargo.toml")]).collect()
 }
 

@@ -59,13 +59,7 @@ pub fn intersect_sphere<R: Real>(
 ) -> Option<PrimitiveHit<R>> {
     let center = R::Vec3::from_array(record.center);
     let t = sphere::intersect(ray, center, R::from_f32(record.radius), exclusion.of(slot))?;
-    Some(PrimitiveHit {
-        t,
-        uv: [R::ZERO; 2],
-        slot,
-        primitive: record.stable_id,
-        material: record.material,
-    })
+    Some(PrimitiveHit { t, uv: [R::ZERO; 2], slot, primitive: record.stable_id, material: record.material })
 }
 
 /// The state of one search.

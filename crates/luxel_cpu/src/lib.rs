@@ -29,4 +29,3 @@ pub mod volume;
 pub use hit::{Exclusion, Hit};
 pub use path::PathState;
 pub use tracer::CpuTracer;
-

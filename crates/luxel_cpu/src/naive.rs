@@ -72,9 +72,11 @@ impl<'a> Naive<'a> {
                     mesh::intersect_triangle(record, slot, instance, ray, exclusion)
                 }))
             }
-            _ => first(self.voxels[slot as usize].iter().filter_map(|v| {
-                volume::intersect_voxel(&v.node, v.slot, v.cell, instance, ray, exclusion)
-            })),
+            _ => {
+                first(self.voxels[slot as usize].iter().filter_map(|v| {
+                    volume::intersect_voxel(&v.node, v.slot, v.cell, instance, ray, exclusion)
+                }))
+            }
         }
     }
 }

@@ -54,7 +54,9 @@ fn scatter<R: Real>(
     let geometry = facing(&surface, path.ray.direction);
     let block = rng::bounce_block(path.bounce - 1);
     let [u0, u1, u2, _] = rng::uniform4::<R>(path.pixel, path.sample, block, scene.params.seed);
-    let Some(BsdfSample { wi, weight, eta_scale }) = bsdf::sample(material, &geometry, [u0, u1, u2], counters) else {
+    let Some(BsdfSample { wi, weight, eta_scale }) =
+        bsdf::sample(material, &geometry, [u0, u1, u2], counters)
+    else {
         return false;
     };
     counters[Counter::ScatteredRays] += 1;

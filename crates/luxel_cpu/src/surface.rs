@@ -27,8 +27,7 @@ impl<R: Real> Surface<R> {
     pub fn at(scene: &FlatScene, ray: &Ray<R>, hit: &Hit<R>) -> Self {
         let instance = &scene.instances.as_slice()[hit.instance as usize];
         let object_from_world = Affine::<R>::from_rows(&instance.object_from_world);
-        let point =
-            object_from_world.point(ray.origin) + object_from_world.vector(ray.direction) * hit.on.t;
+        let point = object_from_world.point(ray.origin) + object_from_world.vector(ray.direction) * hit.on.t;
         let local = match instance.kind {
             KIND_SPHERES => sphere_surface(scene, hit, point),
             KIND_MESH => triangle_surface(scene, hit),

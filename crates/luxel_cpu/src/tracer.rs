@@ -5,11 +5,11 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
+use luxel_film::Film;
 use luxel_film::accumulate::add_sample;
 use luxel_film::tracer::{
     Backend, BackendFacts, FilmKey, PassTime, Progress, TraceError, TraceRequest, TraceStats, Tracer,
 };
-use luxel_film::Film;
 use luxel_flat::{Aov, Counter, Counters, Feature, FeatureSet, FilmPixel, FlatScene};
 use luxel_geom::Vector;
 use rayon::prelude::*;
@@ -51,7 +51,12 @@ impl CpuTracer {
 impl Tracer for CpuTracer {
     fn facts(&self) -> BackendFacts {
         let threads = rayon::current_num_threads();
-        BackendFacts { backend: Backend::Cpu, device: format!("{threads} threads"), driver: String::new(), threads }
+        BackendFacts {
+            backend: Backend::Cpu,
+            device: format!("{threads} threads"),
+            driver: String::new(),
+            threads,
+        }
     }
 
     fn set_scene(&mut self, request: TraceRequest) -> Result<(), TraceError> {
@@ -121,11 +126,8 @@ impl Job {
     }
 
     fn trace_pixels(&mut self, range: Range<usize>) -> Counters {
-        let context = Context {
-            scene: &self.request.scene,
-            features: self.request.features,
-            sample: self.sample,
-        };
+        let context =
+            Context { scene: &self.request.scene, features: self.request.features, sample: self.sample };
         let chunks = self.film.pixels[range.clone()].par_chunks_mut(CHUNK_PIXELS);
         let first = |chunk: usize| (range.start + chunk * CHUNK_PIXELS) as u32;
         match &mut self.film.aovs {
@@ -160,7 +162,12 @@ struct Context<'a> {
 }
 
 impl Context<'_> {
-    fn trace_chunk(&self, first_pixel: u32, pixels: &mut [FilmPixel], mut aovs: Option<&mut [Aov]>) -> Counters {
+    fn trace_chunk(
+        &self,
+        first_pixel: u32,
+        pixels: &mut [FilmPixel],
+        mut aovs: Option<&mut [Aov]>,
+    ) -> Counters {
         let mut counters = Counters::default();
         for (i, pixel) in pixels.iter_mut().enumerate() {
             let aov = aovs.as_deref_mut().map(|aovs| &mut aovs[i]);

@@ -97,3 +97,15 @@ impl fmt::Display for Diagnosis {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_that_slip_through_are_a_violation() {
+        assert_eq!(violations(None, None), Vec::<String>::new());
+        assert_eq!(violations(None, Some(0)), Vec::<String>::new());
+        assert_eq!(violations(None, Some(3)), ["3 of 65536 rays slip through a closed mesh"]);
+    }
+}

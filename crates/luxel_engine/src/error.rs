@@ -63,7 +63,9 @@ impl EngineError {
     /// The exit code that the error leads to.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Scene(_) | Self::Bake { .. } | Self::NoSuchCamera { .. } | Self::Setting(_) => ExitCode::BadInput,
+            Self::Scene(_) | Self::Bake { .. } | Self::NoSuchCamera { .. } | Self::Setting(_) => {
+                ExitCode::BadInput
+            }
             Self::Output(OutputError::Io { .. } | OutputError::Encode { .. }) => ExitCode::Machine,
             Self::Output(_) => ExitCode::BadInput,
             Self::Gpu(_) | Self::Trace(_) => ExitCode::Machine,

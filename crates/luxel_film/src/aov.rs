@@ -47,8 +47,15 @@ pub enum LayerValues {
 
 impl AovKind {
     /// Every kind.
-    pub const ALL: &[Self] =
-        &[Self::Albedo, Self::Normal, Self::Depth, Self::Position, Self::Ids, Self::SampleCount, Self::Variance];
+    pub const ALL: &[Self] = &[
+        Self::Albedo,
+        Self::Normal,
+        Self::Depth,
+        Self::Position,
+        Self::Ids,
+        Self::SampleCount,
+        Self::Variance,
+    ];
 
     /// Name on the command line.
     pub fn name(self) -> &'static str {
@@ -170,8 +177,9 @@ mod tests {
         let mut film = Film::new(3, 2);
         film.aovs = Some(vec![Aov::default(); 6]);
         let mut names = std::collections::HashSet::new();
-        for layer in
-            beauty_layers(&film).into_iter().chain(AovKind::ALL.iter().flat_map(|kind| kind.layers(&film).unwrap()))
+        for layer in beauty_layers(&film)
+            .into_iter()
+            .chain(AovKind::ALL.iter().flat_map(|kind| kind.layers(&film).unwrap()))
         {
             let count = match &layer.values {
                 LayerValues::Color(values) | LayerValues::Float(values) => values.len(),

@@ -46,7 +46,12 @@ impl ImageError {
         let mean_square = squares.iter().sum::<f64>() / squares.len() as f64;
         squares.sort_unstable_by(f64::total_cmp);
         let quantile = |q: f64| squares[(q * squares.len() as f64).ceil() as usize - 1].sqrt();
-        Self { relative: mean_square.sqrt(), p50: quantile(0.50), p95: quantile(0.95), samples: film.samples() }
+        Self {
+            relative: mean_square.sqrt(),
+            p50: quantile(0.50),
+            p95: quantile(0.95),
+            samples: film.samples(),
+        }
     }
 
     /// True if every pixel has at least [`MIN_SAMPLES`] samples.
@@ -110,7 +115,8 @@ mod tests {
 
     #[test]
     fn the_floor_follows_the_exposure() {
-        let dim = |white| ImageError::of(&film(4, 64, |_, sample| (sample % 2) as f32 * 1e-3), white).relative;
+        let dim =
+            |white| ImageError::of(&film(4, 64, |_, sample| (sample % 2) as f32 * 1e-3), white).relative;
         assert!(dim(1.0) < 0.01 && dim(1e-3) > 0.1);
     }
 }

@@ -28,5 +28,7 @@ pub use error::ImageError;
 pub use film::Film;
 pub use stop::{StopRule, StopState};
 pub use tonemap::ToneMap;
-pub use tracer::{Backend, BackendFacts, FilmKey, PassTime, Progress, TraceError, TraceRequest, TraceStats, Tracer};
+pub use tracer::{
+    Backend, BackendFacts, FilmKey, PassTime, Progress, TraceError, TraceRequest, TraceStats, Tracer,
+};
 pub use view::{Display, View};

@@ -29,7 +29,9 @@ impl StopRule {
         match self {
             Self::Samples(samples) => state.samples >= samples,
             Self::Seconds(secs) => state.secs >= secs,
-            Self::Error(limit) => state.error.is_some_and(|error| error.is_trusted() && error.relative <= limit),
+            Self::Error(limit) => {
+                state.error.is_some_and(|error| error.is_trusted() && error.relative <= limit)
+            }
         }
     }
 
@@ -89,7 +91,10 @@ mod tests {
 
     #[test]
     fn the_sample_limit_is_the_smallest() {
-        assert_eq!(StopRule::sample_limit(&[StopRule::Samples(9), StopRule::Seconds(1.0), StopRule::Samples(4)]), 4);
+        assert_eq!(
+            StopRule::sample_limit(&[StopRule::Samples(9), StopRule::Seconds(1.0), StopRule::Samples(4)]),
+            4
+        );
         assert_eq!(StopRule::sample_limit(&[StopRule::Error(0.1)]), u32::MAX);
     }
 }

@@ -151,7 +151,11 @@ mod tests {
         for map in ToneMap::ALL {
             for (r, g, b) in odd.iter().flat_map(|r| odd.iter().flat_map(move |g| odd.map(|b| (*r, *g, b)))) {
                 let light = map.apply([r, g, b]);
-                assert!(light.iter().all(|c| (0.0..=1.0).contains(c)), "{map:?} of {:?}: {light:?}", [r, g, b]);
+                assert!(
+                    light.iter().all(|c| (0.0..=1.0).contains(c)),
+                    "{map:?} of {:?}: {light:?}",
+                    [r, g, b]
+                );
             }
         }
     }

@@ -74,7 +74,12 @@ impl TraceRequest {
     /// What samples must have in common to share a film.
     pub fn key(&self) -> FilmKey {
         let camera = &self.scene.params.camera;
-        FilmKey { revision: self.scene.revision, features: self.features, width: camera.width, height: camera.height }
+        FilmKey {
+            revision: self.scene.revision,
+            features: self.features,
+            width: camera.width,
+            height: camera.height,
+        }
     }
 }
 

@@ -97,7 +97,9 @@ impl Display {
             View::Position => position(hits, film.anchor),
             View::Ids => draw_hits(hits, id_color),
             View::SampleCount => heat(film.pixels.iter().map(|pixel| pixel.count as f32)),
-            View::Variance => heat(film.pixels.iter().map(|pixel| accumulate::variance_of_mean(pixel).sqrt())),
+            View::Variance => {
+                heat(film.pixels.iter().map(|pixel| accumulate::variance_of_mean(pixel).sqrt()))
+            }
             View::Steps => heat(hits.iter().map(|hit| hit.steps as f32)),
         })
     }
@@ -144,7 +146,10 @@ fn heat(values: impl Iterator<Item = f32>) -> Vec<[u8; 3]> {
     let mut sorted = values.clone();
     sorted.sort_unstable_by(f32::total_cmp);
     let top = sorted.get((sorted.len() * 99).div_ceil(100).saturating_sub(1)).copied().unwrap_or(0.0);
-    values.iter().map(|value| colorous::TURBO.eval_continuous(place(*value, [0.0, top]).into()).as_array()).collect()
+    values
+        .iter()
+        .map(|value| colorous::TURBO.eval_continuous(place(*value, [0.0, top]).into()).as_array())
+        .collect()
 }
 
 /// A colour that neighbouring ids do not share: three bytes of a mixed hash, none of them dark.
@@ -189,17 +194,19 @@ mod tests {
 
     #[test]
     fn near_is_lighter_than_far_and_far_lighter_than_the_sky() {
-        let grey: Vec<u8> = show(&film(vec![hit(1, 2.0), hit(1, 3.0), hit(1, 10.0), hit(0, 0.0)]), View::Depth)
-            .into_iter()
-            .map(|[r, ..]| r)
-            .collect();
+        let grey: Vec<u8> =
+            show(&film(vec![hit(1, 2.0), hit(1, 3.0), hit(1, 10.0), hit(0, 0.0)]), View::Depth)
+                .into_iter()
+                .map(|[r, ..]| r)
+                .collect();
         assert!(grey[0] == 255 && grey[0] > grey[1] && grey[1] > grey[2] && grey[2] > grey[3], "{grey:?}");
     }
 
     #[test]
     fn positions_span_the_visible_box() {
         let at = |position| Aov { position, ..hit(1, 1.0) };
-        let picture = show(&film(vec![at([0.0; 3]), at([2.0, 4.0, 0.0]), at([1.0, 1.0, 0.0])]), View::Position);
+        let picture =
+            show(&film(vec![at([0.0; 3]), at([2.0, 4.0, 0.0]), at([1.0, 1.0, 0.0])]), View::Position);
         assert_eq!(picture, [[0, 0, 0], [255, 255, 0], [128, 64, 0]]);
     }
 

@@ -1,6 +1,7 @@
 //! The frozen scene: what `bake` publishes and both tracers read.
 use crate::{
-    BvhNode, FeatureSet, Heap, Instance, MaterialRecord, OctreeNode, SceneParams, SphereRecord, SvoNode, Triangle,
+    BvhNode, FeatureSet, Heap, Instance, MaterialRecord, OctreeNode, SceneParams, SphereRecord, SvoNode,
+    Triangle,
 };
 
 /// Consecutive records of a heap.

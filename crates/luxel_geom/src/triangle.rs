@@ -4,7 +4,8 @@
 //! on `t` of pbrt-v4 §6.8.7. Deviations (robustness.md, A1): each edge function is evaluated in an order that
 //! depends on its end points only, so that two triangles which share an edge compute the same number whatever
 //! the compiler fuses, and an edge function counts as inside down to its own rounding error. No ray slips
-//! between neighbours; a ray on the border may meet both, which a closest hit does not mind.
+//! between neighbours; a ray on the border may meet both, which a closest hit does not mind. And a hit below the bound
+//! on `t` is not dropped but decided by the triangle's plane.
 use crate::{Aabb, Exclude, Real, SlabRay, Vector};
 
 /// Where a ray meets a triangle.
@@ -41,13 +42,13 @@ pub fn intersect<R: Real>(ray: &SlabRay<R>, v: &[R::Vec3; 3], exclude: Exclude) 
     if !interval.overlaps(ray.t_min, ray.t_max) || exclude != Exclude::Nothing {
         return None;
     }
-    let hit = intersect_plane_parallelogram(ray, v)?;
+    let hit = woop(ray, v)?;
     let t = interval.clamp(hit.t);
     (t > ray.t_min && t <= ray.t_max).then_some(TriangleHit { t, ..hit })
 }
 
 /// Woop's test itself, before the ray's interval is applied.
-fn intersect_plane_parallelogram<R: Real>(ray: &SlabRay<R>, v: &[R::Vec3; 3]) -> Option<TriangleHit<R>> {
+fn woop<R: Real>(ray: &SlabRay<R>, v: &[R::Vec3; 3]) -> Option<TriangleHit<R>> {
     let kz = largest_axis::<R>(ray.direction);
     let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
     let inv_z = R::ONE / ray.direction.axis(kz);
@@ -66,7 +67,8 @@ fn intersect_plane_parallelogram<R: Real>(ray: &SlabRay<R>, v: &[R::Vec3; 3]) ->
     }
     let weights = inside(e0 / det, e1 / det, e2 / det)?;
     let t = (weights[0] * s[0].z + (weights[1] * s[1].z + weights[2] * s[2].z)) * inv_z;
-    (t > t_error(&s, det, inv_z)).then_some(TriangleHit { t, u: weights[1], v: weights[2] })
+    let is_ahead = t > t_error(&s, det, inv_z) || is_plane_ahead::<R>(ray, v);
+    is_ahead.then_some(TriangleHit { t, u: weights[1], v: weights[2] })
 }
 
 /// Barycentric weights held inside the triangle: the tolerance may let them stand just outside.
@@ -114,7 +116,21 @@ fn edge<R: Real>(a: &Sheared<R>, b: &Sheared<R>) -> (R, R) {
     (if swap { -e } else { e }, error)
 }
 
-/// A hit with `t` below this bound may lie behind the origin (pbrt-v4 §6.8.7, Δt).
+/// True if the ray runs towards the triangle's plane, as seen from every vertex.
+///
+/// Decides the hits that are nearer than [`t_error`]. Dropping those, as pbrt does, lets a ray that starts beside the
+/// edge of two walls out of a closed room: 4 of a million bounces in a cube, against 3 of a hundred million. Over a
+/// triangle whose normal is off the vertices disagree, so that no needle is hit by a ray that leaves it.
+fn is_plane_ahead<R: Real>(ray: &SlabRay<R>, v: &[R::Vec3; 3]) -> bool {
+    let normal = area_normal::<R>(v);
+    let towards = normal.dot(ray.direction) > R::ZERO;
+    v.iter().all(|p| {
+        let height = normal.dot(*p - ray.origin);
+        if towards { height > R::ZERO } else { height < R::ZERO }
+    })
+}
+
+/// Below this bound the sign of a hit's `t` may be wrong (pbrt-v4 §6.8.7, Δt).
 fn t_error<R: Real>(s: &[Sheared<R>; 3], det: R, inv_z: R) -> R {
     let largest = |f: fn(&Sheared<R>) -> R| f(&s[0]).abs().max(f(&s[1]).abs()).max(f(&s[2]).abs());
     let (max_x, max_y, depth) = (largest(|p| p.x), largest(|p| p.y), largest(|p| p.z));

@@ -190,7 +190,7 @@ fn f01_a_spawned_ray_does_not_meet_its_own_triangle() {
         let v = [(); 3].map(|()| offset + random.point(size));
         let area = triangle::area_normal::<f32>(&v).length();
         // What rounding leaves of a small triangle far away may have no plane to speak of.
-        if !(area > 1e-2 * size * size) || offset.length() > 1e4 * size {
+        if area <= 1e-2 * size * size || offset.length() > 1e4 * size {
             continue;
         }
         let (ray, moved) = spawned(&mut random, &v, i % 2 == 0);

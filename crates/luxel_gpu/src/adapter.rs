@@ -92,13 +92,7 @@ impl fmt::Display for AdapterFacts {
             AdapterKind::Hardware => "hardware",
             AdapterKind::Software => "software",
         };
-        let Self {
-            name,
-            backend,
-            driver,
-            driver_info,
-            ..
-        } = self;
+        let Self { name, backend, driver, driver_info, .. } = self;
         write!(f, "{name} ({kind}, {backend}, {driver} {driver_info})")
     }
 }
@@ -106,10 +100,7 @@ impl fmt::Display for AdapterFacts {
 /// Every adapter that a device could be opened on, best first. Empty where there is no driver. `WGPU_BACKEND` narrows it.
 pub fn list_adapters() -> Vec<AdapterFacts> {
     let instance = new_instance();
-    ranked_adapters(&instance)
-        .iter()
-        .map(AdapterFacts::of)
-        .collect()
+    ranked_adapters(&instance).iter().map(AdapterFacts::of).collect()
 }
 
 pub(crate) fn new_instance() -> wgpu::Instance {
@@ -128,14 +119,8 @@ pub(crate) fn choose_adapter(
             (adapter, facts)
         })
         .collect();
-    let found = adapters
-        .iter()
-        .map(|(_, facts)| facts.to_string())
-        .collect::<Vec<_>>();
-    adapters
-        .into_iter()
-        .find(|(_, facts)| accepts(request, facts))
-        .ok_or_else(|| no_adapter(request, &found))
+    let found = adapters.iter().map(|(_, facts)| facts.to_string()).collect::<Vec<_>>();
+    adapters.into_iter().find(|(_, facts)| accepts(request, facts)).ok_or_else(|| no_adapter(request, &found))
 }
 
 fn ranked_adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
@@ -184,16 +169,8 @@ fn no_adapter(request: &GpuRequest, found: &[String]) -> GpuError {
     } else {
         "Name one of these with LUXEL_ADAPTER, or use the CPU backend"
     };
-    let found = if found.is_empty() {
-        "none".to_owned()
-    } else {
-        found.join("; ")
-    };
-    GpuError::NoAdapter {
-        wanted,
-        found,
-        advice,
-    }
+    let found = if found.is_empty() { "none".to_owned() } else { found.join("; ") };
+    GpuError::NoAdapter { wanted, found, advice }
 }
 
 #[cfg(test)]
@@ -231,10 +208,7 @@ mod tests {
 
     #[test]
     fn a_missing_adapter_says_what_there_is() {
-        let request = GpuRequest {
-            adapter: Some("xyz".to_owned()),
-            ..GpuRequest::default()
-        };
+        let request = GpuRequest { adapter: Some("xyz".to_owned()), ..GpuRequest::default() };
         let message = no_adapter(&request, &["A".to_owned(), "B".to_owned()]).to_string();
         assert_eq!(
             message,

@@ -45,21 +45,13 @@ pub struct BindSet {
 
 impl BindSet {
     pub(crate) fn groups(&self) -> impl Iterator<Item = (u32, &wgpu::BindGroup)> {
-        self.groups
-            .iter()
-            .map(|(group, bind_group)| (*group, bind_group))
+        self.groups.iter().map(|(group, bind_group)| (*group, bind_group))
     }
 }
 
 /// One layout for each group up to the highest in use; a group without bindings has an empty one.
-pub(crate) fn layouts(
-    gpu: &Gpu,
-    shader: &LinkedShader,
-) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
-    let group_count = shader
-        .bindings
-        .last()
-        .map_or(0, |binding| binding.group + 1);
+pub(crate) fn layouts(gpu: &Gpu, shader: &LinkedShader) -> Result<Vec<wgpu::BindGroupLayout>, GpuError> {
+    let group_count = shader.bindings.last().map_or(0, |binding| binding.group + 1);
     let label = shader.kernel.to_string();
     let layout = |group| {
         let entries: Vec<_> = in_group(shader, group).map(layout_entry).collect();
@@ -94,19 +86,11 @@ pub(crate) fn bind(
         })?;
         Ok((group, made))
     };
-    Ok(BindSet {
-        groups: (0..)
-            .zip(layouts)
-            .map(bind_group)
-            .collect::<Result<_, _>>()?,
-    })
+    Ok(BindSet { groups: (0..).zip(layouts).map(bind_group).collect::<Result<_, _>>()? })
 }
 
 fn in_group(shader: &LinkedShader, group: u32) -> impl Iterator<Item = &Binding> {
-    shader
-        .bindings
-        .iter()
-        .filter(move |binding| binding.group == group)
+    shader.bindings.iter().filter(move |binding| binding.group == group)
 }
 
 fn layout_entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
@@ -137,8 +121,5 @@ fn entry<'a>(
         kernel: kernel.to_owned(),
         binding: binding.name.clone(),
     })?;
-    Ok(wgpu::BindGroupEntry {
-        binding: binding.binding,
-        resource: buffer.as_entire_binding(),
-    })
+    Ok(wgpu::BindGroupEntry { binding: binding.binding, resource: buffer.as_entire_binding() })
 }

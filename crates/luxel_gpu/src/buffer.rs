@@ -23,11 +23,7 @@ impl GpuBuffer {
     /// [`GpuError::LimitExceeded`] beyond the device's binding or buffer size; [`GpuError::OutOfMemory`]; [`GpuError::Lost`].
     pub fn new(gpu: &Gpu, label: &str, bytes: u64) -> Result<Self, GpuError> {
         let capacity = capacity_for(gpu, label, bytes)?;
-        Ok(Self {
-            label: label.to_owned(),
-            raw: create(gpu, label, capacity)?,
-            generation: 0,
-        })
+        Ok(Self { label: label.to_owned(), raw: create(gpu, label, capacity)?, generation: 0 })
     }
 
     /// A buffer that holds `data`.
@@ -69,9 +65,8 @@ impl GpuBuffer {
         let capacity = needed.max((2 * old_bytes).min(max_bytes(gpu)));
         let grown = create(gpu, &self.label, capacity)?;
         gpu.scoped(&self.label, 0, |device| {
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-                label: Some("grow"),
-            });
+            let mut encoder =
+                device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("grow") });
             encoder.copy_buffer_to_buffer(&self.raw, 0, &grown, 0, old_bytes);
             gpu.queue().submit([encoder.finish()])
         })?;
@@ -87,13 +82,7 @@ impl GpuBuffer {
     /// [`GpuError::BadRange`] outside the capacity, or when `T` is no multiple of 4 bytes; [`GpuError::Lost`], …
     pub fn write<T: Pod>(&self, gpu: &Gpu, first: u64, data: &[T]) -> Result<(), GpuError> {
         let (offset, _) = self.range_of::<T>(first, data.len() as u64)?;
-        upload(
-            gpu,
-            &self.label,
-            &self.raw,
-            offset,
-            bytemuck::cast_slice(data),
-        )
+        upload(gpu, &self.label, &self.raw, offset, bytemuck::cast_slice(data))
     }
 
     /// Makes `data` the buffer's first elements, growing it where needed. Returns whether it moved.
@@ -132,9 +121,7 @@ impl GpuBuffer {
         }
         Err(GpuError::BadRange {
             what: self.label.clone(),
-            message: format!(
-                "{bytes} bytes at {offset} are not aligned to 4 inside its {capacity} bytes"
-            ),
+            message: format!("{bytes} bytes at {offset} are not aligned to 4 inside its {capacity} bytes"),
         })
     }
 
@@ -164,23 +151,14 @@ fn create(gpu: &Gpu, label: &str, bytes: u64) -> Result<wgpu::Buffer, GpuError> 
 /// The largest buffer that can be bound whole, a multiple of 4.
 fn max_bytes(gpu: &Gpu) -> u64 {
     let limits = gpu.limits();
-    limits
-        .max_buffer_bytes
-        .min(limits.max_storage_binding_bytes)
-        & !(wgpu::COPY_BUFFER_ALIGNMENT - 1)
+    limits.max_buffer_bytes.min(limits.max_storage_binding_bytes) & !(wgpu::COPY_BUFFER_ALIGNMENT - 1)
 }
 
 fn capacity_for(gpu: &Gpu, label: &str, bytes: u64) -> Result<u64, GpuError> {
     let has = max_bytes(gpu);
     if bytes > has {
         let what = format!("buffer '{label}' in bytes");
-        return Err(GpuError::LimitExceeded {
-            what,
-            needs: bytes,
-            has,
-        });
+        return Err(GpuError::LimitExceeded { what, needs: bytes, has });
     }
-    Ok(bytes
-        .next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT)
-        .max(MIN_BYTES))
+    Ok(bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT).max(MIN_BYTES))
 }

@@ -61,13 +61,8 @@ impl Default for GpuRequest {
 impl GpuRequest {
     /// The default, with the adapter that the environment variable `LUXEL_ADAPTER` names.
     pub fn from_env() -> Self {
-        let adapter = std::env::var("LUXEL_ADAPTER")
-            .ok()
-            .filter(|name| !name.is_empty());
-        Self {
-            adapter,
-            ..Self::default()
-        }
+        let adapter = std::env::var("LUXEL_ADAPTER").ok().filter(|name| !name.is_empty());
+        Self { adapter, ..Self::default() }
     }
 }
 
@@ -104,30 +99,16 @@ impl Gpu {
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..Default::default()
         };
-        let (device, queue) =
-            pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
-                GpuError::DeviceRefused {
-                    adapter: facts.to_string(),
-                    message: error.to_string(),
-                }
-            })?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
+            GpuError::DeviceRefused { adapter: facts.to_string(), message: error.to_string() }
+        })?;
         let health = Arc::new(Health::default());
         watch(&device, &health);
         let timers = TimerPool::new(facts.timestamps, queue.get_timestamp_period());
         let timeout = Duration::try_from_secs_f64(request.timeout_secs).unwrap_or(Duration::MAX);
         let limits = GpuLimits::from(&limits);
         tracing::info!(adapter = %facts, "GPU device opened");
-        Ok(Self {
-            shared: Arc::new(Shared {
-                device,
-                queue,
-                facts,
-                limits,
-                timeout,
-                health,
-                timers,
-            }),
-        })
+        Ok(Self { shared: Arc::new(Shared { device, queue, facts, limits, timeout, health, timers }) })
     }
 
     /// The adapter that the device is on.
@@ -215,13 +196,7 @@ impl Gpu {
         what: &str,
     ) -> Result<(), GpuError> {
         let timeout = Some(self.shared.timeout);
-        self.poll(
-            wgpu::PollType::Wait {
-                submission_index: submission,
-                timeout,
-            },
-            what,
-        )?;
+        self.poll(wgpu::PollType::Wait { submission_index: submission, timeout }, what)?;
         self.check()
     }
 
@@ -229,10 +204,7 @@ impl Gpu {
     /// finds its objects invalid, and tells of the loss only when the work is done.
     fn lost_or(&self, error: GpuError) -> GpuError {
         let timeout = Some(self.shared.timeout);
-        let all = wgpu::PollType::Wait {
-            submission_index: None,
-            timeout,
-        };
+        let all = wgpu::PollType::Wait { submission_index: None, timeout };
         match self.poll(all, "work under way") {
             Err(lost @ GpuError::Lost { .. }) => lost,
             _ => self.shared.health.check_lost().err().unwrap_or(error),
@@ -243,19 +215,15 @@ impl Gpu {
         self.shared.health.check_lost()?;
         match catch_unwind(AssertUnwindSafe(|| self.shared.device.poll(poll))) {
             Ok(Ok(_)) => Ok(()),
-            Ok(Err(wgpu::PollError::Timeout)) => Err(GpuError::Timeout {
-                what: what.to_owned(),
-                secs: self.shared.timeout.as_secs_f64(),
-            }),
+            Ok(Err(wgpu::PollError::Timeout)) => {
+                Err(GpuError::Timeout { what: what.to_owned(), secs: self.shared.timeout.as_secs_f64() })
+            }
             // The submit itself was refused, as on a dying device.
-            Ok(Err(error)) => Err(self.lost_or(GpuError::Internal {
-                what: what.to_owned(),
-                message: error.to_string(),
-            })),
+            Ok(Err(error)) => {
+                Err(self.lost_or(GpuError::Internal { what: what.to_owned(), message: error.to_string() }))
+            }
             Err(_) => {
-                self.shared
-                    .health
-                    .lose(format!("the driver failed while waiting for {what}"));
+                self.shared.health.lose(format!("the driver failed while waiting for {what}"));
                 self.shared.health.check_lost()
             }
         }

@@ -105,14 +105,8 @@ impl GpuError {
         let what = what.to_owned();
         match error {
             wgpu::Error::OutOfMemory { .. } => Self::OutOfMemory { what, bytes },
-            wgpu::Error::Validation { description, .. } => Self::Validation {
-                what,
-                message: description,
-            },
-            wgpu::Error::Internal { description, .. } => Self::Internal {
-                what,
-                message: description,
-            },
+            wgpu::Error::Validation { description, .. } => Self::Validation { what, message: description },
+            wgpu::Error::Internal { description, .. } => Self::Internal { what, message: description },
         }
     }
 }

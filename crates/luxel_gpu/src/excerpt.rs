@@ -21,11 +21,7 @@ pub(crate) fn excerpt(place: &str, source: &str, span: Range<usize>) -> String {
     let carets = "^".repeat(first_line.chars().count().max(1));
     let margin = " ".repeat(line_number.to_string().len());
     // Tabs stay tabs, so that the caret lands under its text.
-    let indent: String = line
-        .chars()
-        .take(column)
-        .map(|c| if c == '\t' { '\t' } else { ' ' })
-        .collect();
+    let indent: String = line.chars().take(column).map(|c| if c == '\t' { '\t' } else { ' ' }).collect();
     format!(
         "  --> {place}:{line_number}:{}\n {line_number} | {line}\n {margin} | {indent}{carets}",
         column + 1
@@ -41,10 +37,7 @@ mod tests {
         let source = "fn a() {}\n\tlet é = bad(x);\n";
         let start = source.find("bad").unwrap();
         let text = excerpt("package::m", source, start..start + 3);
-        assert_eq!(
-            text,
-            "  --> package::m:2:10\n 2 | \tlet é = bad(x);\n   | \t        ^^^"
-        );
+        assert_eq!(text, "  --> package::m:2:10\n 2 | \tlet é = bad(x);\n   | \t        ^^^");
     }
 
     #[test]
@@ -52,9 +45,6 @@ mod tests {
         assert_eq!(excerpt("p", "abc", 2..9), "  --> p");
         assert_eq!(excerpt("p", "é", 1..2), "  --> p");
         assert_eq!(excerpt("p", "", 0..0), "  --> p:1:1\n 1 | \n   | ^");
-        assert_eq!(
-            excerpt("p", "ab\ncd", 1..4),
-            "  --> p:1:2\n 1 | ab\n   |  ^"
-        );
+        assert_eq!(excerpt("p", "ab\ncd", 1..4), "  --> p:1:2\n 1 | ab\n   |  ^");
     }
 }

@@ -30,10 +30,7 @@ struct Recording {
 impl Frame {
     /// A frame with nothing recorded.
     pub fn new(gpu: &Gpu) -> Self {
-        Self {
-            gpu: gpu.clone(),
-            open: None,
-        }
+        Self { gpu: gpu.clone(), open: None }
     }
 
     /// Records a pass of `workgroups` of the kernel (zero in any dimension runs nothing, and is timed).
@@ -56,9 +53,7 @@ impl Frame {
             });
         }
         let [x, y, z] = workgroups;
-        self.pass(label, pipeline, bindings, |pass| {
-            pass.dispatch_workgroups(x, y, z)
-        })
+        self.pass(label, pipeline, bindings, |pass| pass.dispatch_workgroups(x, y, z))
     }
 
     /// Records a pass that reads its three workgroup counts (`u32` each) from `counts` at byte `offset` when it runs.
@@ -85,9 +80,7 @@ impl Frame {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn clear(&mut self, buffer: &GpuBuffer) -> Result<(), GpuError> {
-        self.recording()?
-            .encoder
-            .clear_buffer(buffer.raw(), 0, None);
+        self.recording()?.encoder.clear_buffer(buffer.raw(), 0, None);
         Ok(())
     }
 
@@ -104,13 +97,7 @@ impl Frame {
         source.check_range(source_offset, bytes)?;
         target.check_range(target_offset, bytes)?;
         let encoder = &mut self.recording()?.encoder;
-        encoder.copy_buffer_to_buffer(
-            source.raw(),
-            source_offset,
-            target.raw(),
-            target_offset,
-            bytes,
-        );
+        encoder.copy_buffer_to_buffer(source.raw(), source_offset, target.raw(), target_offset, bytes);
         Ok(())
     }
 
@@ -119,11 +106,7 @@ impl Frame {
     /// # Errors
     /// [`GpuError::Validation`] naming the passes when one of them was invalid; [`GpuError::Lost`], …
     pub fn submit(&mut self) -> Result<Submission, GpuError> {
-        let Recording {
-            mut encoder,
-            labels,
-            timers,
-        } = self.take_recording()?;
+        let Recording { mut encoder, labels, timers } = self.take_recording()?;
         let what = format!("passes {}", labels.join(", "));
         let queue = self.gpu.queue();
         let started = Instant::now();
@@ -138,13 +121,7 @@ impl Frame {
         let done = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&done);
         queue.on_submitted_work_done(move || flag.store(true, Ordering::Release));
-        Ok(Submission {
-            index,
-            labels,
-            timers,
-            started,
-            done,
-        })
+        Ok(Submission { index, labels, timers, started, done })
     }
 
     fn pass(
@@ -155,11 +132,7 @@ impl Frame {
         dispatch: impl FnOnce(&mut wgpu::ComputePass<'_>),
     ) -> Result<(), GpuError> {
         let gpu = self.gpu.clone();
-        let Recording {
-            encoder,
-            labels,
-            timers,
-        } = self.recording()?;
+        let Recording { encoder, labels, timers } = self.recording()?;
         if timers.last().is_none_or(TimerBlock::is_full) {
             timers.extend(gpu.timers().take(&gpu)?);
         }
@@ -188,15 +161,9 @@ impl Frame {
             return Ok(recording);
         }
         let encoder = self.gpu.scoped("command encoder", 0, |device| {
-            device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-                label: Some("frame"),
-            })
+            device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") })
         })?;
-        Ok(Recording {
-            encoder,
-            labels: Vec::new(),
-            timers: Vec::new(),
-        })
+        Ok(Recording { encoder, labels: Vec::new(), timers: Vec::new() })
     }
 }
 
@@ -225,16 +192,11 @@ impl Submission {
     /// # Errors
     /// [`GpuError::Timeout`], or what [`Gpu::check`] finds.
     pub fn wait(self, gpu: &Gpu) -> Result<PassTimes, GpuError> {
-        gpu.wait_for(
-            Some(self.index),
-            &format!("passes {}", self.labels.join(", ")),
-        )?;
+        gpu.wait_for(Some(self.index), &format!("passes {}", self.labels.join(", ")))?;
         let wall_ms = self.started.elapsed().as_secs_f64() * 1e3;
         let times = gpu.timers().read(self.timers, self.labels.len());
         let passes = self.labels.into_iter().zip(times);
-        let passes = passes
-            .map(|(label, gpu_ms)| PassTime { label, gpu_ms })
-            .collect();
+        let passes = passes.map(|(label, gpu_ms)| PassTime { label, gpu_ms }).collect();
         Ok(PassTimes { passes, wall_ms })
     }
 }
@@ -267,30 +229,14 @@ mod tests {
     #[test]
     fn workgroups_cover_all_items_with_little_waste() {
         let limits = GpuLimits::from(&wgpu::Limits::default());
-        for items in [
-            0,
-            1,
-            63,
-            64,
-            65,
-            65_535 * 64,
-            65_535 * 64 + 1,
-            1 << 32,
-            123_456_789_012,
-        ] {
+        for items in [0, 1, 63, 64, 65, 65_535 * 64, 65_535 * 64 + 1, 1 << 32, 123_456_789_012] {
             let [x, y, z] = workgroups_for(items, 64, &limits).unwrap();
             let covered = u64::from(x) * u64::from(y) * 64;
             assert!(x <= 65_535 && y <= 65_535 && z == 1);
             assert!(covered >= items, "{items} items, {covered} covered");
-            assert!(
-                covered < items + 64 * u64::from(y.max(1)) + 64,
-                "{items} items, {covered} covered"
-            );
+            assert!(covered < items + 64 * u64::from(y.max(1)) + 64, "{items} items, {covered} covered");
         }
         assert_eq!(workgroups_for(0, 64, &limits).unwrap(), [0, 0, 1]);
-        assert!(matches!(
-            workgroups_for(1 << 40, 64, &limits),
-            Err(GpuError::LimitExceeded { .. })
-        ));
+        assert!(matches!(workgroups_for(1 << 40, 64, &limits), Err(GpuError::LimitExceeded { .. })));
     }
 }

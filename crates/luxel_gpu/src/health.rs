@@ -33,9 +33,7 @@ impl Health {
     /// An error if the device is gone.
     pub(crate) fn check_lost(&self) -> Result<(), GpuError> {
         match self.lost.get() {
-            Some(reason) => Err(GpuError::Lost {
-                reason: reason.clone(),
-            }),
+            Some(reason) => Err(GpuError::Lost { reason: reason.clone() }),
             None => Ok(()),
         }
     }
@@ -60,9 +58,7 @@ impl Health {
     }
 
     fn errors(&self) -> MutexGuard<'_, VecDeque<GpuError>> {
-        self.uncaptured
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
+        self.uncaptured.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -76,23 +72,11 @@ mod tests {
         assert_eq!(health.check_lost(), Ok(()));
         health.lose("first".to_owned());
         health.lose("second".to_owned());
-        assert_eq!(
-            health.check_lost(),
-            Err(GpuError::Lost {
-                reason: "first".to_owned()
-            })
-        );
+        assert_eq!(health.check_lost(), Err(GpuError::Lost { reason: "first".to_owned() }));
         for i in 0..1000 {
-            health.push(GpuError::Lost {
-                reason: i.to_string(),
-            });
+            health.push(GpuError::Lost { reason: i.to_string() });
         }
-        assert_eq!(
-            health.pop(),
-            Some(GpuError::Lost {
-                reason: "0".to_owned()
-            })
-        );
+        assert_eq!(health.pop(), Some(GpuError::Lost { reason: "0".to_owned() }));
         assert_eq!(health.take().len(), MAX_KEPT_ERRORS - 1);
         assert_eq!(health.pop(), None);
     }

@@ -122,20 +122,13 @@ pub(crate) fn describe(
     map: Option<&BasicSourceMap>,
 ) -> Result<LinkedShader, GpuError> {
     check_entry(&kernel, module)?;
-    let names = Names {
-        kernel: &kernel,
-        map,
-    };
+    let names = Names { kernel: &kernel, map };
     let linked_name = |name: &Option<String>| name.clone().unwrap_or_default();
-    let functions = module
-        .functions
-        .iter()
-        .map(|(_, function)| names.with_module(&linked_name(&function.name)));
+    let functions =
+        module.functions.iter().map(|(_, function)| names.with_module(&linked_name(&function.name)));
     let overrides = module.overrides.iter().map(|(_, constant)| {
         let linked = linked_name(&constant.name);
-        let key = constant
-            .id
-            .map_or_else(|| linked.clone(), |id| id.to_string());
+        let key = constant.id.map_or_else(|| linked.clone(), |id| id.to_string());
         (names.declared(&linked), key)
     });
     Ok(LinkedShader {
@@ -149,10 +142,7 @@ pub(crate) fn describe(
 }
 
 fn check_entry(kernel: &Kernel, module: &naga::Module) -> Result<(), GpuError> {
-    let entry = module
-        .entry_points
-        .iter()
-        .find(|entry| entry.name == kernel.entry);
+    let entry = module.entry_points.iter().find(|entry| entry.name == kernel.entry);
     let problem = match entry {
         None => format!("no entry point '{}' in {}", kernel.entry, kernel.module),
         Some(entry) if entry.workgroup_size_overrides.is_some() => {
@@ -194,32 +184,20 @@ fn bindings(names: &Names<'_>, module: &naga::Module) -> Result<Vec<Binding>, Gp
     Ok(bindings)
 }
 
-fn access(
-    names: &Names<'_>,
-    name: &str,
-    variable: &GlobalVariable,
-) -> Result<BindingAccess, GpuError> {
+fn access(names: &Names<'_>, name: &str, variable: &GlobalVariable) -> Result<BindingAccess, GpuError> {
     match variable.space {
         AddressSpace::Uniform => Ok(BindingAccess::Uniform),
         AddressSpace::Storage { access } if access.contains(StorageAccess::STORE) => {
             Ok(BindingAccess::StorageReadWrite)
         }
         AddressSpace::Storage { .. } => Ok(BindingAccess::StorageRead),
-        _ => Err(shader_error(
-            names.kernel,
-            format!("binding '{name}' is no buffer"),
-            String::new(),
-        )),
+        _ => Err(shader_error(names.kernel, format!("binding '{name}' is no buffer"), String::new())),
     }
 }
 
 fn size_of_variable(module: &naga::Module, variable: Handle<GlobalVariable>) -> u64 {
     let ty = module.global_variables[variable].ty;
-    module.types[ty]
-        .inner
-        .try_size(module.to_ctx())
-        .unwrap_or(0)
-        .into()
+    module.types[ty].inner.try_size(module.to_ctx()).unwrap_or(0).into()
 }
 
 fn structs(names: &Names<'_>, module: &naga::Module) -> Vec<StructLayout> {
@@ -237,9 +215,5 @@ fn structs(names: &Names<'_>, module: &naga::Module) -> Vec<StructLayout> {
         }),
         _ => None,
     };
-    module
-        .types
-        .iter()
-        .filter_map(|(_, ty)| layout(ty))
-        .collect()
+    module.types.iter().filter_map(|(_, ty)| layout(ty)).collect()
 }

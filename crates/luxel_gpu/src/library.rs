@@ -54,21 +54,14 @@ pub struct Overrides(BTreeMap<&'static str, u64>);
 impl Overrides {
     /// The constants by declared name.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
-        self.0
-            .iter()
-            .map(|(&name, &bits)| (name, f64::from_bits(bits)))
+        self.0.iter().map(|(&name, &bits)| (name, f64::from_bits(bits)))
     }
 }
 
 impl FromIterator<(&'static str, f64)> for Overrides {
     fn from_iter<I: IntoIterator<Item = (&'static str, f64)>>(constants: I) -> Self {
         // As bits, so that the set can be a key.
-        Self(
-            constants
-                .into_iter()
-                .map(|(name, value)| (name, value.to_bits()))
-                .collect(),
-        )
+        Self(constants.into_iter().map(|(name, value)| (name, value.to_bits())).collect())
     }
 }
 
@@ -90,11 +83,7 @@ impl ShaderLibrary {
     pub fn from_modules<S: Into<Cow<'static, str>>>(
         modules: impl IntoIterator<Item = (&'static str, S)>,
     ) -> Self {
-        modules
-            .into_iter()
-            .fold(Self::default(), |library, (path, source)| {
-                library.with_module(path, source)
-            })
+        modules.into_iter().fold(Self::default(), |library, (path, source)| library.with_module(path, source))
     }
 
     /// The library with one module added or replaced.
@@ -106,9 +95,7 @@ impl ShaderLibrary {
 
     /// Paths and sources, by path.
     pub fn modules(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.modules
-            .iter()
-            .map(|(path, source)| (path.as_str(), source.as_ref()))
+        self.modules.iter().map(|(path, source)| (path.as_str(), source.as_ref()))
     }
 
     /// Links `kernel` with what it uses under `features` into one WGSL text, and checks it with naga.
@@ -123,9 +110,7 @@ impl ShaderLibrary {
     fn add_dir(&mut self, dir: &Dir<'static>) {
         for file in dir.files() {
             let path = file.path();
-            let is_wesl = path
-                .extension()
-                .is_some_and(|extension| extension == "wesl");
+            let is_wesl = path.extension().is_some_and(|extension| extension == "wesl");
             if let (true, Some(source)) = (is_wesl, file.contents_utf8()) {
                 let stem = path.with_extension("");
                 let parts = stem.iter().map(|part| part.to_string_lossy());

@@ -34,45 +34,27 @@ fn assemble(
     }
     let root = module_path(kernel, kernel.module)?;
     let mut compiler = Wesl::new_barebones().set_custom_resolver(resolver);
-    compiler
-        .set_mangler(ManglerKind::Escape)
-        .use_sourcemap(true)
-        .set_options(CompileOptions {
-            keep: Some(vec![kernel.entry.to_owned()]),
-            features: Features {
-                default: Feature::Error,
-                flags: features
-                    .iter()
-                    .map(|(name, on)| (name.to_owned(), on.into()))
-                    .collect(),
-            },
-            ..CompileOptions::default()
-        });
-    compiler
-        .compile(&root)
-        .map_err(|error| wesl_error(kernel, error))
+    compiler.set_mangler(ManglerKind::Escape).use_sourcemap(true).set_options(CompileOptions {
+        keep: Some(vec![kernel.entry.to_owned()]),
+        features: Features {
+            default: Feature::Error,
+            flags: features.iter().map(|(name, on)| (name.to_owned(), on.into())).collect(),
+        },
+        ..CompileOptions::default()
+    });
+    compiler.compile(&root).map_err(|error| wesl_error(kernel, error))
 }
 
 fn module_path(kernel: &Kernel, path: &str) -> Result<ModulePath, GpuError> {
-    path.parse().map_err(|error| {
-        shader_error(
-            kernel,
-            format!("module path '{path}': {error}"),
-            String::new(),
-        )
-    })
+    path.parse()
+        .map_err(|error| shader_error(kernel, format!("module path '{path}': {error}"), String::new()))
 }
 
 fn parse(kernel: &Kernel, wgsl: &str) -> Result<naga::Module, GpuError> {
     naga::front::wgsl::parse_str(wgsl).map_err(|error| {
         let span = error.labels().next().and_then(|(span, _)| span.to_range());
-        let labels = error
-            .labels()
-            .map(|(_, label)| label)
-            .filter(|label| !label.is_empty());
-        let message = labels.fold(error.message().to_owned(), |message, label| {
-            message + ": " + label
-        });
+        let labels = error.labels().map(|(_, label)| label).filter(|label| !label.is_empty());
+        let message = labels.fold(error.message().to_owned(), |message, label| message + ": " + label);
         shader_error(kernel, message, linked_excerpt(kernel, wgsl, span))
     })
 }
@@ -82,26 +64,17 @@ fn validate(kernel: &Kernel, wgsl: &str, module: &naga::Module) -> Result<(), Gp
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     validator.validate(module).map(|_| ()).map_err(|error| {
         let span = error.spans().next().and_then(|(span, _)| span.to_range());
-        shader_error(
-            kernel,
-            with_causes(error.as_inner()),
-            linked_excerpt(kernel, wgsl, span),
-        )
+        shader_error(kernel, with_causes(error.as_inner()), linked_excerpt(kernel, wgsl, span))
     })
 }
 
 fn linked_excerpt(kernel: &Kernel, wgsl: &str, span: Option<std::ops::Range<usize>>) -> String {
-    span.map_or_else(String::new, |span| {
-        excerpt(&format!("{kernel} (linked)"), wgsl, span)
-    })
+    span.map_or_else(String::new, |span| excerpt(&format!("{kernel} (linked)"), wgsl, span))
 }
 
 fn with_causes(error: &dyn std::error::Error) -> String {
     let causes = std::iter::successors(Some(error), |error| error.source());
-    causes
-        .map(ToString::to_string)
-        .collect::<Vec<_>>()
-        .join(": ")
+    causes.map(ToString::to_string).collect::<Vec<_>>().join(": ")
 }
 
 fn wesl_error(kernel: &Kernel, error: wesl::Error) -> GpuError {
@@ -109,10 +82,7 @@ fn wesl_error(kernel: &Kernel, error: wesl::Error) -> GpuError {
         return shader_error(kernel, error.to_string(), String::new());
     };
     let detail = &diagnostic.detail;
-    let place = detail
-        .module_path
-        .as_ref()
-        .map_or_else(|| kernel.module.to_owned(), ToString::to_string);
+    let place = detail.module_path.as_ref().map_or_else(|| kernel.module.to_owned(), ToString::to_string);
     let excerpt = match (&detail.source, &detail.span) {
         (Some(source), Some(span)) => excerpt(&place, source, span.range()),
         _ => format!("  --> {place}"),
@@ -134,9 +104,5 @@ fn wesl_message(error: &wesl::Error) -> String {
 
 /// An error about `kernel`.
 pub(crate) fn shader_error(kernel: &Kernel, message: String, excerpt: String) -> GpuError {
-    GpuError::Shader {
-        kernel: kernel.to_string(),
-        message,
-        excerpt,
-    }
+    GpuError::Shader { kernel: kernel.to_string(), message, excerpt }
 }

@@ -79,18 +79,13 @@ impl NumericsReport {
         ];
         let promises = [
             ("a NaN is not found by its bits", self.nan_found_by_bits),
-            (
-                "integer arithmetic differs from the CPU's",
-                self.integers_exact,
-            ),
+            ("integer arithmetic differs from the CPU's", self.integers_exact),
             ("a loop does not stop at its cap", self.loop_caps_hold),
         ];
         let errors = errors.into_iter().filter(|(_, error, bound)| error > bound);
         let broken = promises.into_iter().filter(|(_, kept)| !kept);
         errors
-            .map(|(name, error, bound)| {
-                format!("{name} is off by {error:.1} ulp, WGSL allows {bound}")
-            })
+            .map(|(name, error, bound)| format!("{name} is off by {error:.1} ulp, WGSL allows {bound}"))
             .chain(broken.map(|(message, _)| message.to_owned()))
             .collect()
     }

@@ -71,12 +71,7 @@ pub struct PipelineCache {
 impl PipelineCache {
     /// An empty cache.
     pub fn new(library: ShaderLibrary) -> Self {
-        Self {
-            library,
-            linked: HashMap::new(),
-            pipelines: HashMap::new(),
-            records: Vec::new(),
-        }
+        Self { library, linked: HashMap::new(), pipelines: HashMap::new(), records: Vec::new() }
     }
 
     /// The pipeline of `kernel` for these features and constants, compiled if it is new.
@@ -104,9 +99,7 @@ impl PipelineCache {
             functions: pipeline.shader.functions.len(),
             bindings: pipeline.shader.bindings.len(),
             wall_ms: wall.elapsed().as_secs_f64() * 1e3,
-            cpu_ms: cpu
-                .and_then(|cpu| cpu.try_elapsed().ok())
-                .map(|busy| busy.as_secs_f64() * 1e3),
+            cpu_ms: cpu.and_then(|cpu| cpu.try_elapsed().ok()).map(|busy| busy.as_secs_f64() * 1e3),
         });
         self.pipelines.insert(key, Arc::clone(&pipeline));
         Ok(pipeline)
@@ -122,11 +115,7 @@ impl PipelineCache {
         self.pipelines.clear();
     }
 
-    fn link(
-        &mut self,
-        kernel: &Kernel,
-        features: &FeatureSet,
-    ) -> Result<Arc<LinkedShader>, GpuError> {
+    fn link(&mut self, kernel: &Kernel, features: &FeatureSet) -> Result<Arc<LinkedShader>, GpuError> {
         let key = (*kernel, features.clone());
         if let Some(shader) = self.linked.get(&key) {
             return Ok(Arc::clone(shader));
@@ -137,11 +126,7 @@ impl PipelineCache {
     }
 }
 
-fn compile(
-    gpu: &Gpu,
-    shader: Arc<LinkedShader>,
-    overrides: &Overrides,
-) -> Result<Pipeline, GpuError> {
+fn compile(gpu: &Gpu, shader: Arc<LinkedShader>, overrides: &Overrides) -> Result<Pipeline, GpuError> {
     check_limits(gpu, &shader)?;
     let constants = constants(&shader, overrides)?;
     let label = shader.kernel.to_string();
@@ -169,42 +154,19 @@ fn compile(
             cache: None,
         })
     })?;
-    Ok(Pipeline {
-        shader,
-        layouts,
-        raw,
-    })
+    Ok(Pipeline { shader, layouts, raw })
 }
 
 fn check_limits(gpu: &Gpu, shader: &LinkedShader) -> Result<(), GpuError> {
     let limits = gpu.limits();
     let kernel = &shader.kernel;
-    let storage = shader
-        .bindings
-        .iter()
-        .filter(|binding| binding.access != BindingAccess::Uniform)
-        .count();
-    let invocations: u64 = kernel
-        .workgroup_size
-        .iter()
-        .map(|&size| u64::from(size))
-        .product();
+    let storage = shader.bindings.iter().filter(|binding| binding.access != BindingAccess::Uniform).count();
+    let invocations: u64 = kernel.workgroup_size.iter().map(|&size| u64::from(size)).product();
     let checks = [
-        (
-            "storage buffers",
-            storage as u64,
-            limits.max_storage_buffers_per_stage,
-        ),
-        (
-            "invocations per workgroup",
-            invocations,
-            limits.max_invocations_per_workgroup,
-        ),
+        ("storage buffers", storage as u64, limits.max_storage_buffers_per_stage),
+        ("invocations per workgroup", invocations, limits.max_invocations_per_workgroup),
     ];
-    match checks
-        .into_iter()
-        .find(|&(_, needs, has)| needs > u64::from(has))
-    {
+    match checks.into_iter().find(|&(_, needs, has)| needs > u64::from(has)) {
         None => Ok(()),
         Some((what, needs, has)) => Err(GpuError::LimitExceeded {
             what: format!("kernel {kernel} in {what}"),
@@ -214,21 +176,11 @@ fn check_limits(gpu: &Gpu, shader: &LinkedShader) -> Result<(), GpuError> {
     }
 }
 
-fn constants<'a>(
-    shader: &'a LinkedShader,
-    overrides: &Overrides,
-) -> Result<Vec<(&'a str, f64)>, GpuError> {
+fn constants<'a>(shader: &'a LinkedShader, overrides: &Overrides) -> Result<Vec<(&'a str, f64)>, GpuError> {
     let constant = |(name, value)| {
-        let declared = shader
-            .override_keys
-            .iter()
-            .find(|(declared, _)| declared == name);
+        let declared = shader.override_keys.iter().find(|(declared, _)| declared == name);
         let (_, key) = declared.ok_or_else(|| {
-            shader_error(
-                &shader.kernel,
-                format!("no override constant '{name}' is linked in"),
-                String::new(),
-            )
+            shader_error(&shader.kernel, format!("no override constant '{name}' is linked in"), String::new())
         })?;
         Ok((key.as_str(), value))
     };

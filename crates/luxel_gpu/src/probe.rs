@@ -10,22 +10,15 @@
 use bytemuck::{Pod, Zeroable};
 
 use crate::{
-    FeatureSet, Frame, Gpu, GpuBuffer, GpuError, Kernel, NumericsReport, Overrides, PassTimes,
-    PipelineCache, Resources, SelectsNan, Uniform,
+    FeatureSet, Frame, Gpu, GpuBuffer, GpuError, Kernel, NumericsReport, Overrides, PassTimes, PipelineCache,
+    Resources, SelectsNan, Uniform,
 };
 
 const SAMPLES: u32 = 4096;
 const LOOP_CAP: u32 = 1000;
-const ACCURACY: Kernel = Kernel {
-    module: "package::probe",
-    entry: "accuracy",
-    workgroup_size: [64, 1, 1],
-};
-const SPECIAL_VALUES: Kernel = Kernel {
-    module: "package::probe",
-    entry: "special_values",
-    workgroup_size: [1, 1, 1],
-};
+const ACCURACY: Kernel = Kernel { module: "package::probe", entry: "accuracy", workgroup_size: [64, 1, 1] };
+const SPECIAL_VALUES: Kernel =
+    Kernel { module: "package::probe", entry: "special_values", workgroup_size: [1, 1, 1] };
 
 const ONE: f32 = 1.0;
 /// Small enough to vanish in 1 + tiny.
@@ -100,12 +93,7 @@ pub fn probe(gpu: &Gpu, pipelines: &mut PipelineCache) -> Result<NumericsReport,
     let operands = operands();
     let (results, accuracy_times) = run_accuracy(gpu, pipelines, &operands)?;
     let (findings, special_times) = run_specials(gpu, pipelines)?;
-    Ok(judge(
-        &operands,
-        &results,
-        &findings,
-        accuracy_times.busy_ms() + special_times.busy_ms(),
-    ))
+    Ok(judge(&operands, &results, &findings, accuracy_times.busy_ms() + special_times.busy_ms()))
 }
 
 fn run_accuracy(
@@ -113,57 +101,27 @@ fn run_accuracy(
     pipelines: &mut PipelineCache,
     operands: &[Operands],
 ) -> Result<(Vec<Results>, PassTimes), GpuError> {
-    let pipeline = pipelines.get(
-        gpu,
-        &ACCURACY,
-        &FeatureSet::default(),
-        &Overrides::default(),
-    )?;
+    let pipeline = pipelines.get(gpu, &ACCURACY, &FeatureSet::default(), &Overrides::default())?;
     let given = GpuBuffer::from_slice(gpu, "operands", operands)?;
-    let results = GpuBuffer::new(
-        gpu,
-        "results",
-        u64::from(SAMPLES) * size_of::<Results>() as u64,
-    )?;
-    let resources = Resources::new()
-        .buffer("operands", &given)
-        .buffer("results", &results);
+    let results = GpuBuffer::new(gpu, "results", u64::from(SAMPLES) * size_of::<Results>() as u64)?;
+    let resources = Resources::new().buffer("operands", &given).buffer("results", &results);
     let bindings = pipeline.bind(gpu, &resources)?;
     let mut frame = Frame::new(gpu);
-    frame.compute(
-        "probe accuracy",
-        &pipeline,
-        &bindings,
-        [SAMPLES / ACCURACY.workgroup_size[0], 1, 1],
-    )?;
+    frame.compute("probe accuracy", &pipeline, &bindings, [SAMPLES / ACCURACY.workgroup_size[0], 1, 1])?;
     let times = frame.submit()?.wait(gpu)?;
     Ok((results.read(gpu, 0, SAMPLES.into())?, times))
 }
 
-fn run_specials(
-    gpu: &Gpu,
-    pipelines: &mut PipelineCache,
-) -> Result<(Findings, PassTimes), GpuError> {
-    let pipeline = pipelines.get(
-        gpu,
-        &SPECIAL_VALUES,
-        &FeatureSet::default(),
-        &Overrides::default(),
-    )?;
+fn run_specials(gpu: &Gpu, pipelines: &mut PipelineCache) -> Result<(Findings, PassTimes), GpuError> {
+    let pipeline = pipelines.get(gpu, &SPECIAL_VALUES, &FeatureSet::default(), &Overrides::default())?;
     let specials = Uniform::new(gpu, "specials", &specials())?;
     let findings = GpuBuffer::new(gpu, "findings", size_of::<Findings>() as u64)?;
-    let resources = Resources::new()
-        .uniform("specials", &specials)
-        .buffer("findings", &findings);
+    let resources = Resources::new().uniform("specials", &specials).buffer("findings", &findings);
     let bindings = pipeline.bind(gpu, &resources)?;
     let mut frame = Frame::new(gpu);
     frame.compute("probe special values", &pipeline, &bindings, [1, 1, 1])?;
     let times = frame.submit()?.wait(gpu)?;
-    let found = findings
-        .read(gpu, 0, 1)?
-        .first()
-        .copied()
-        .unwrap_or_else(Findings::zeroed);
+    let found = findings.read(gpu, 0, 1)?.first().copied().unwrap_or_else(Findings::zeroed);
     Ok((found, times))
 }
 
@@ -172,12 +130,7 @@ fn operands() -> Vec<Operands> {
     let operand = |index: u32| {
         let a = magnitude(pcg_hash(2 * index));
         let b = magnitude(pcg_hash(2 * index + 1));
-        Operands {
-            a,
-            b,
-            c: -(a * b),
-            bits: pcg_hash(!index),
-        }
+        Operands { a, b, c: -(a * b), bits: pcg_hash(!index) }
     };
     (0..SAMPLES).map(operand).collect()
 }
@@ -218,16 +171,9 @@ fn error_ulp(found: f32, exact: f64) -> f64 {
     if error.is_finite() { error } else { f64::MAX }
 }
 
-fn judge(
-    operands: &[Operands],
-    results: &[Results],
-    findings: &Findings,
-    kernel_ms: f64,
-) -> NumericsReport {
+fn judge(operands: &[Operands], results: &[Results], findings: &Findings, kernel_ms: f64) -> NumericsReport {
     let pairs = || operands.iter().zip(results);
-    let worst = |error: fn(&Operands, &Results) -> f64| {
-        pairs().map(|(o, r)| error(o, r)).fold(0.0, f64::max)
-    };
+    let worst = |error: fn(&Operands, &Results) -> f64| pairs().map(|(o, r)| error(o, r)).fold(0.0, f64::max);
     let complete = operands.len() == results.len();
     let [found_one, found_infinity] = [ONE.to_bits(), INFINITY_BITS];
     let selects = |bits: u32| match bits {
@@ -235,12 +181,7 @@ fn judge(
         _ if is_nan_bits(bits) => SelectsNan::Nan,
         _ => SelectsNan::Other,
     };
-    let min_max = [
-        findings.min_nan_one,
-        findings.min_one_nan,
-        findings.max_nan_one,
-        findings.max_one_nan,
-    ];
+    let min_max = [findings.min_nan_one, findings.min_one_nan, findings.max_nan_one, findings.max_one_nan];
     NumericsReport {
         fma_is_fused: pairs().any(|(_, r)| r.fused != 0.0),
         sums_are_contracted: pairs().any(|(_, r)| r.product_sum != 0.0),
@@ -261,9 +202,8 @@ fn judge(
         two_sum_survives: findings.two_sum == TINY.to_bits(),
         guarded_two_sum_survives: findings.two_sum_guarded == TINY.to_bits(),
         integers_exact: complete
-            && pairs().all(|(o, r)| {
-                r.hash == pcg_hash(o.bits) && r.quotient_bits == o.bits / ((o.bits >> 16) | 1)
-            }),
+            && pairs()
+                .all(|(o, r)| r.hash == pcg_hash(o.bits) && r.quotient_bits == o.bits / ((o.bits >> 16) | 1)),
         loop_caps_hold: findings.loop_steps == LOOP_CAP,
         kernel_ms,
     }
@@ -321,10 +261,7 @@ mod tests {
         assert!(report.fma_is_fused && !report.sums_are_contracted);
         assert!(report.division_ulp <= 0.5 && report.root_ulp <= 0.5);
         assert!(report.subnormals_kept && report.two_sum_survives && report.infinity_kept);
-        assert_eq!(
-            report.min_max_with_nan[2..],
-            [SelectsNan::Number, SelectsNan::Nan]
-        );
+        assert_eq!(report.min_max_with_nan[2..], [SelectsNan::Number, SelectsNan::Nan]);
     }
 
     /// Each fault, put into one of 4096 results or one finding, is found.
@@ -332,9 +269,7 @@ mod tests {
     fn every_fault_is_a_violation() {
         type Fault = fn(&mut Vec<Results>, &mut Findings);
         let faults: [(&str, Fault); 9] = [
-            ("division", |r, _| {
-                r[77].quotient = f32::from_bits(r[77].quotient.to_bits() + 4)
-            }),
+            ("division", |r, _| r[77].quotient = f32::from_bits(r[77].quotient.to_bits() + 4)),
             ("reciprocal", |r, _| r[78].reciprocal = f32::NAN),
             ("sqrt", |r, _| r[79].root = 0.0),
             ("inverseSqrt", |r, _| r[80].inverse_root = f32::INFINITY),
@@ -348,32 +283,18 @@ mod tests {
             let (operands, mut results, mut findings) = ideal();
             fault(&mut results, &mut findings);
             let violations = judge(&operands, &results, &findings, 1.0).violations();
-            assert!(
-                violations.len() == 1 && violations[0].contains(name),
-                "{name}: {violations:?}"
-            );
+            assert!(violations.len() == 1 && violations[0].contains(name), "{name}: {violations:?}");
         }
     }
 
     #[test]
     fn records_lie_as_the_shader_says() {
-        let link = |kernel| {
-            ShaderLibrary::embedded()
-                .link(kernel, &FeatureSet::default())
-                .unwrap()
-        };
+        let link = |kernel| ShaderLibrary::embedded().link(kernel, &FeatureSet::default()).unwrap();
         let check = |shader: &LinkedShader, name: &str, bytes: usize| {
             let layout = shader.layout(name).unwrap();
             assert_eq!(layout.size as usize, bytes, "{name}");
             // All members are single words, in order.
-            assert!(
-                layout
-                    .members
-                    .iter()
-                    .zip(0..)
-                    .all(|(member, i)| member.offset == 4 * i),
-                "{name}"
-            );
+            assert!(layout.members.iter().zip(0..).all(|(member, i)| member.offset == 4 * i), "{name}");
         };
         let accuracy = link(&ACCURACY);
         check(&accuracy, "Operands", size_of::<Operands>());

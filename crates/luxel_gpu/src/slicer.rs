@@ -23,15 +23,9 @@ pub struct SlicePolicy {
 
 impl SlicePolicy {
     /// Short enough for 60 frames a second with room to spare.
-    pub const EDITOR: Self = Self {
-        target_ms: 8.0,
-        max_ms: 250.0,
-    };
+    pub const EDITOR: Self = Self { target_ms: 8.0, max_ms: 250.0 };
     /// Long enough to hide the cost of a submit.
-    pub const HEADLESS: Self = Self {
-        target_ms: 50.0,
-        max_ms: 250.0,
-    };
+    pub const HEADLESS: Self = Self { target_ms: 50.0, max_ms: 250.0 };
 }
 
 /// A planned piece of work.
@@ -56,23 +50,14 @@ pub struct Slicer {
 impl Slicer {
     /// A slicer that knows nothing yet.
     pub fn new(policy: SlicePolicy) -> Self {
-        Self {
-            policy,
-            warm: false,
-            last_units: 0,
-            last_cost_ms: None,
-            smoothed_cost_ms: None,
-        }
+        Self { policy, warm: false, last_units: 0, last_cost_ms: None, smoothed_cost_ms: None }
     }
 
     /// The next slice of `remaining` units (at least one unit, also when none remains).
     pub fn plan(&self, remaining: u64) -> Slice {
         let most = remaining.max(1);
         if !self.warm {
-            return Slice {
-                units: 1,
-                warm_up: true,
-            };
+            return Slice { units: 1, warm_up: true };
         }
         let units = match self.unit_cost_ms() {
             None => 1,
@@ -83,10 +68,7 @@ impl Slicer {
                 affordable.min(self.last_units.saturating_mul(MAX_GROWTH))
             }
         };
-        Slice {
-            units: units.clamp(1, most),
-            warm_up: false,
-        }
+        Slice { units: units.clamp(1, most), warm_up: false }
     }
 
     /// Tells what a slice took, in milliseconds. A time that is no number or negative is ignored.
@@ -97,11 +79,7 @@ impl Slicer {
         }
         // The short slice at a job's end says nothing against slices of the usual length.
         let cut_short = slice.units < self.plan(u64::MAX).units;
-        self.last_units = if cut_short {
-            self.last_units.max(slice.units)
-        } else {
-            slice.units
-        };
+        self.last_units = if cut_short { self.last_units.max(slice.units) } else { slice.units };
         let cost_ms = measured_ms / slice.units as f64;
         let smoothed = self.smoothed_cost_ms.unwrap_or(cost_ms);
         self.smoothed_cost_ms = Some(smoothed + SMOOTHING * (cost_ms - smoothed));
@@ -149,34 +127,16 @@ mod tests {
     fn the_warm_up_is_one_unit_and_is_not_measured() {
         let mut slicer = Slicer::new(SlicePolicy::EDITOR);
         let first = slicer.plan(1000);
-        assert_eq!(
-            first,
-            Slice {
-                units: 1,
-                warm_up: true
-            }
-        );
+        assert_eq!(first, Slice { units: 1, warm_up: true });
         slicer.record(first, 5000.0);
         assert_eq!(slicer.unit_cost_ms(), None);
-        assert_eq!(
-            slicer.plan(1000),
-            Slice {
-                units: 1,
-                warm_up: false
-            }
-        );
+        assert_eq!(slicer.plan(1000), Slice { units: 1, warm_up: false });
         run(&mut slicer, 20, 0.1);
         slicer.rewarm();
         let again = slicer.plan(1000);
         assert!(again.warm_up && again.units == 1);
         slicer.record(again, 5000.0);
-        assert_eq!(
-            slicer.plan(1000),
-            Slice {
-                units: 80,
-                warm_up: false
-            }
-        );
+        assert_eq!(slicer.plan(1000), Slice { units: 80, warm_up: false });
     }
 
     #[test]
@@ -196,17 +156,9 @@ mod tests {
         let log = run(&mut slicer, 60, 0.05);
         let units: Vec<u64> = log.iter().map(|(slice, _)| slice.units).collect();
         assert_eq!(units[0], 10);
-        assert!(
-            units.windows(2).all(|pair| pair[1] <= 2 * pair[0]),
-            "{units:?}"
-        );
+        assert!(units.windows(2).all(|pair| pair[1] <= 2 * pair[0]), "{units:?}");
         // The smoothed cost nears the new one from above and never reaches it.
-        assert!(
-            units
-                .last()
-                .is_some_and(|&last| (999..=1000).contains(&last)),
-            "{units:?}"
-        );
+        assert!(units.last().is_some_and(|&last| (999..=1000).contains(&last)), "{units:?}");
     }
 
     #[test]
@@ -219,10 +171,7 @@ mod tests {
     #[test]
     fn no_plan_exceeds_the_cap_by_the_last_known_cost() {
         // A target above the cap shows that the cap is what holds; costs jump by up to 100 in either direction.
-        let policy = SlicePolicy {
-            target_ms: 1000.0,
-            max_ms: 250.0,
-        };
+        let policy = SlicePolicy { target_ms: 1000.0, max_ms: 250.0 };
         for policy in [policy, SlicePolicy::EDITOR, SlicePolicy::HEADLESS] {
             let mut slicer = Slicer::new(policy);
             let mut state = 1_u32;
@@ -233,10 +182,7 @@ mod tests {
                 let slice = slicer.plan(u64::MAX);
                 if let Some(cost_ms) = last_cost_ms {
                     let planned_ms = slice.units as f64 * cost_ms;
-                    assert!(
-                        planned_ms <= 250.0 || slice.units == 1,
-                        "{planned_ms} ms planned"
-                    );
+                    assert!(planned_ms <= 250.0 || slice.units == 1, "{planned_ms} ms planned");
                 }
                 slicer.record(slice, slice.units as f64 * unit_ms);
                 last_cost_ms = (!slice.warm_up).then_some(unit_ms);

@@ -20,10 +20,7 @@ pub const SKIP_MARK: &str = "LUXEL-GPU-SKIP";
 /// Without a device and without that permission: a GPU test never passes silently.
 pub fn gpu_or_fail() -> Option<Gpu> {
     static SKIPPED: AtomicU32 = AtomicU32::new(0);
-    let request = GpuRequest {
-        software: SoftwarePolicy::Allow,
-        ..GpuRequest::from_env()
-    };
+    let request = GpuRequest { software: SoftwarePolicy::Allow, ..GpuRequest::from_env() };
     match Gpu::open(&request) {
         Ok(gpu) => Some(gpu),
         Err(error) if std::env::var(ALLOW_NO_GPU).is_ok_and(|value| value == "1") => {

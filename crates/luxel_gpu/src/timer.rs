@@ -93,11 +93,7 @@ impl TimerBlock {
         drop(view);
         self.readback.unmap();
         let pairs = ticks.chunks_exact(2).take(self.passes as usize);
-        Some(
-            pairs
-                .map(|pair| pair[1].saturating_sub(pair[0]) as f64 * tick_ms)
-                .collect(),
-        )
+        Some(pairs.map(|pair| pair[1].saturating_sub(pair[0]) as f64 * tick_ms).collect())
     }
 }
 
@@ -112,11 +108,7 @@ pub(crate) struct TimerPool {
 impl TimerPool {
     /// `tick_ns`: nanoseconds per tick of the device's clock.
     pub(crate) fn new(enabled: bool, tick_ns: f32) -> Self {
-        Self {
-            enabled,
-            tick_ms: f64::from(tick_ns) * 1e-6,
-            free: Mutex::new(Vec::new()),
-        }
+        Self { enabled, tick_ms: f64::from(tick_ns) * 1e-6, free: Mutex::new(Vec::new()) }
     }
 
     /// A block to time passes with; `None` where the adapter has no timestamps.
@@ -124,11 +116,7 @@ impl TimerPool {
         if !self.enabled {
             return Ok(None);
         }
-        let free = self
-            .free
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .pop();
+        let free = self.free.lock().unwrap_or_else(PoisonError::into_inner).pop();
         match free {
             Some(block) => Ok(Some(block)),
             None => new_block(gpu).map(Some),
@@ -145,10 +133,7 @@ impl TimerPool {
             };
             times.extend(ms.into_iter().map(Some));
             block.passes = 0;
-            self.free
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .push(block);
+            self.free.lock().unwrap_or_else(PoisonError::into_inner).push(block);
         }
         times.resize(passes, None);
         times
@@ -185,10 +170,7 @@ mod tests {
     #[test]
     fn busy_time_is_the_sum_of_passes_or_else_wall_time() {
         let pass = |gpu_ms| PassTime { label: "p", gpu_ms };
-        let times = |passes| PassTimes {
-            passes,
-            wall_ms: 9.0,
-        };
+        let times = |passes| PassTimes { passes, wall_ms: 9.0 };
         assert_eq!(times(vec![pass(Some(1.0)), pass(Some(2.5))]).busy_ms(), 3.5);
         assert_eq!(times(vec![pass(Some(1.0)), pass(None)]).busy_ms(), 9.0);
         assert_eq!(times(vec![]).busy_ms(), 9.0);

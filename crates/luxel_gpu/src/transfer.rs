@@ -69,9 +69,8 @@ fn download_chunk(
     data: &mut Vec<u8>,
 ) -> Result<(), GpuError> {
     let index = gpu.scoped(what, bytes, |device| {
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-            label: Some("readback"),
-        });
+        let mut encoder =
+            device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("readback") });
         encoder.copy_buffer_to_buffer(buffer, offset, staging, 0, bytes);
         let index = gpu.queue().submit([encoder.finish()]);
         // Whether the mapping worked shows when its range is asked for.
@@ -81,10 +80,7 @@ fn download_chunk(
     gpu.wait_for(Some(index), what)?;
     let view = staging
         .get_mapped_range(0..bytes)
-        .map_err(|error| GpuError::Internal {
-            what: what.to_owned(),
-            message: error.to_string(),
-        })?;
+        .map_err(|error| GpuError::Internal { what: what.to_owned(), message: error.to_string() })?;
     data.extend_from_slice(&view);
     drop(view);
     gpu.scoped(what, 0, |_| staging.unmap())

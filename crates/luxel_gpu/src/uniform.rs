@@ -31,11 +31,7 @@ impl<T: Pod> Uniform<T> {
                 mapped_at_creation: false,
             })
         })?;
-        let uniform = Self {
-            label: label.to_owned(),
-            raw,
-            holds: PhantomData,
-        };
+        let uniform = Self { label: label.to_owned(), raw, holds: PhantomData };
         uniform.write(gpu, value)?;
         Ok(uniform)
     }

@@ -2,8 +2,8 @@
 use bevy_ecs::prelude::Resource;
 use bytemuck::Pod;
 use luxel_flat::{
-    BvhNode, Counter, DisplayParams, FlatScene, Heap, Instance, MaterialRecord, OctreeNode, SceneParams, SliceParams, SphereRecord,
-    SvoNode, Triangle,
+    BvhNode, Counter, DisplayParams, FlatScene, Heap, Instance, MaterialRecord, OctreeNode, SceneParams,
+    SliceParams, SphereRecord, SvoNode, Triangle,
 };
 use luxel_gpu::{Gpu, GpuBuffer, GpuError, Resources, Uniform};
 

@@ -149,7 +149,8 @@ impl GpuTracer {
     fn trace_sample(&mut self, slice: SliceParams, tile: usize, max_depth: u32) -> Result<f64, GpuError> {
         let bounces = max_depth.min(MAX_BOUNCES);
         let finishes = bounces == max_depth;
-        let mut longest_ms = self.run(Work { slice, tile, purpose: Purpose::Trace { starts: true, bounces, finishes } })?;
+        let mut longest_ms =
+            self.run(Work { slice, tile, purpose: Purpose::Trace { starts: true, bounces, finishes } })?;
         if finishes {
             return Ok(longest_ms);
         }
@@ -273,7 +274,9 @@ fn no_scene() -> GpuError {
 fn trace_error(error: GpuError) -> TraceError {
     match error {
         GpuError::Lost { .. } | GpuError::Timeout { .. } => TraceError::DeviceLost(error.to_string()),
-        GpuError::OutOfMemory { .. } | GpuError::LimitExceeded { .. } => TraceError::OutOfMemory(error.to_string()),
+        GpuError::OutOfMemory { .. } | GpuError::LimitExceeded { .. } => {
+            TraceError::OutOfMemory(error.to_string())
+        }
         _ => TraceError::Failed(error.to_string()),
     }
 }

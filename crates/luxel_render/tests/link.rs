@@ -1,6 +1,6 @@
 //! Every kernel links and validates for every feature alone, every pair, and all; nothing of a feature that is
 //! left out is linked; no kernel grows beyond its bound; layouts are the Rust records'.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 use luxel_flat::{FEATURES, FeatureSet};
 use luxel_gpu::{LinkedShader, ShaderLibrary};
 use luxel_render::{KERNELS, conditions};
@@ -63,7 +63,8 @@ fn no_kernel_exceeds_its_bounds() {
     let library = ShaderLibrary::embedded();
     for (row, shader) in KERNELS.iter().zip(link_all(&library, FeatureSet::ALL)) {
         let functions = shader.functions.len();
-        let storage = shader.bindings.iter().filter(|b| b.access != luxel_gpu::BindingAccess::Uniform).count();
+        let storage =
+            shader.bindings.iter().filter(|b| b.access != luxel_gpu::BindingAccess::Uniform).count();
         println!("{}: {functions} functions, {storage} storage buffers", row.kernel.entry);
         assert!(functions <= row.max_functions, "{}: {functions} functions", row.kernel.entry);
         assert!(storage <= MAX_STORAGE_BUFFERS, "{}: {storage} storage buffers", row.kernel.entry);
@@ -77,11 +78,13 @@ fn linked_layouts_are_those_of_the_rust_records() {
     for shader in link_all(&library, FeatureSet::ALL) {
         for layout in &shader.structs {
             let name = layout.name.rsplit("::").next().unwrap();
-            let Some((_, fields, size)) = luxel_flat::wesl::structs().into_iter().find(|row| row.0 == name) else {
+            let Some((_, fields, size)) = luxel_flat::wesl::structs().into_iter().find(|row| row.0 == name)
+            else {
                 continue;
             };
             assert_eq!(layout.size as usize, size, "size of {name}");
-            let offsets: Vec<_> = layout.members.iter().map(|m| (m.name.as_str(), m.offset as usize)).collect();
+            let offsets: Vec<_> =
+                layout.members.iter().map(|m| (m.name.as_str(), m.offset as usize)).collect();
             let expected: Vec<_> = fields.iter().map(|f| (f.name, f.offset)).collect();
             assert_eq!(offsets, expected, "{name}");
             seen.insert(name.to_owned());

@@ -26,11 +26,7 @@ impl MeshAsset {
 
     /// The unit square that grounds and walls are made of; see [`MeshSource::Quad`].
     pub(crate) fn quad() -> Self {
-        Self {
-            mesh: procedural::quad(),
-            source: MeshSource::Quad,
-            dropped: Dropped::default(),
-        }
+        Self { mesh: procedural::quad(), source: MeshSource::Quad, dropped: Dropped::default() }
     }
 }
 

@@ -30,21 +30,14 @@ pub struct Transform {
 
 impl Default for Transform {
     fn default() -> Self {
-        Self {
-            translation: DVec3::ZERO,
-            rotation: DQuat::IDENTITY,
-            scale: DVec3::ONE,
-        }
+        Self { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE }
     }
 }
 
 impl Transform {
     /// Only moved, by `translation` metres.
     pub fn at(translation: DVec3) -> Self {
-        Self {
-            translation,
-            ..Self::default()
-        }
+        Self { translation, ..Self::default() }
     }
 
     /// At `eye`, −Z pointing at `target`, +Y as near to the world's +Y as can be.
@@ -52,18 +45,12 @@ impl Transform {
     /// Looking straight up or down, or at itself, there is no nearest +Y; then the rotation of a
     /// view along −Z is tilted or left as it is, so the result is always a rotation.
     pub fn looking_at(eye: DVec3, target: DVec3) -> Self {
-        let rotation = (target - eye)
-            .try_normalize()
-            .map_or(DQuat::IDENTITY, |forward| {
-                let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
-                let up = right.cross(forward);
-                DQuat::from_mat3(&glam::DMat3::from_cols(right, up, -forward)).normalize()
-            });
-        Self {
-            translation: eye,
-            rotation,
-            scale: DVec3::ONE,
-        }
+        let rotation = (target - eye).try_normalize().map_or(DQuat::IDENTITY, |forward| {
+            let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
+            let up = right.cross(forward);
+            DQuat::from_mat3(&glam::DMat3::from_cols(right, up, -forward)).normalize()
+        });
+        Self { translation: eye, rotation, scale: DVec3::ONE }
     }
 
     /// `parent_from_local` as a matrix.
@@ -118,11 +105,7 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Self {
-        Self {
-            vertical_fov: 40f64.to_radians(),
-            lens_radius: 0.0,
-            focus_distance: 1.0,
-        }
+        Self { vertical_fov: 40f64.to_radians(), lens_radius: 0.0, focus_distance: 1.0 }
     }
 }
 

@@ -109,18 +109,11 @@ pub enum SceneError {
 impl SceneError {
     /// A model file that is damaged at `place`.
     pub(crate) fn model(path: &Path, place: impl ToString, message: impl Into<String>) -> Self {
-        Self::Model {
-            path: path.to_owned(),
-            place: place.to_string(),
-            message: message.into(),
-        }
+        Self::Model { path: path.to_owned(), place: place.to_string(), message: message.into() }
     }
 
     /// A model file that leaves nothing to show.
     pub(crate) fn unusable(path: &Path, message: impl Into<String>) -> Self {
-        Self::Unusable {
-            path: path.to_owned(),
-            message: message.into(),
-        }
+        Self::Unusable { path: path.to_owned(), message: message.into() }
     }
 }

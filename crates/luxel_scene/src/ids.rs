@@ -7,9 +7,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// Tracers break ties by it, so two worlds with the same ids give the same picture, whatever order
 /// the entities were spawned in.
-#[derive(
-    Component, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Serialize, Deserialize,
-)]
+#[derive(Component, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Serialize, Deserialize)]
 #[component(immutable)]
 #[serde(transparent)]
 pub struct StableId(pub u32);

@@ -48,12 +48,11 @@ use std::path::Path;
 use bevy_ecs::prelude::World;
 
 pub use assets::{
-    AssetId, Assets, Dropped, MeshAsset, MeshSource, TriangleMesh, VolumeAsset, VolumeSource,
-    Voxel, VoxelGrid,
+    AssetId, Assets, Dropped, MeshAsset, MeshSource, TriangleMesh, VolumeAsset, VolumeSource, Voxel,
+    VoxelGrid,
 };
 pub use components::{
-    ActiveCamera, Camera, GlobalTransform, MeshInstance, Name, Sphere, Transform, Visibility,
-    VoxelVolume,
+    ActiveCamera, Camera, GlobalTransform, MeshInstance, Name, Sphere, Transform, Visibility, VoxelVolume,
 };
 pub use error::SceneError;
 pub use ids::{StableId, StableIds, spawn};
@@ -79,23 +78,16 @@ pub fn empty_world() -> World {
 /// # Errors
 /// One message with the file and the place in it; then `world` is as it was.
 pub fn load(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
-    let metadata = fs::metadata(path).map_err(|source| SceneError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let metadata = fs::metadata(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
     if !metadata.is_file() {
-        return Err(SceneError::NotAFile {
-            path: path.to_owned(),
-        });
+        return Err(SceneError::NotAFile { path: path.to_owned() });
     }
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     match ending.to_str() {
         Some("ron") => file::load_scene(path, world),
         Some("obj") => import::load_obj_scene(path, world),
         Some("vox") => import::load_vox_scene(path, world),
-        _ => Err(SceneError::UnknownKind {
-            path: path.to_owned(),
-        }),
+        _ => Err(SceneError::UnknownKind { path: path.to_owned() }),
     }
 }
 

@@ -41,9 +41,7 @@ pub enum Surface {
 impl Default for Surface {
     /// The light grey of a plaster model.
     fn default() -> Self {
-        Self::Lambert {
-            albedo: Vec3::splat(0.73),
-        }
+        Self::Lambert { albedo: Vec3::splat(0.73) }
     }
 }
 
@@ -65,18 +63,12 @@ impl Material {
 
     /// A black body that glows with `radiance`.
     pub fn lamp(radiance: Vec3) -> Self {
-        Self {
-            surface: Surface::Lambert { albedo: Vec3::ZERO },
-            emission: radiance,
-        }
+        Self { surface: Surface::Lambert { albedo: Vec3::ZERO }, emission: radiance }
     }
 }
 
 impl From<Surface> for Material {
     fn from(surface: Surface) -> Self {
-        Self {
-            surface,
-            emission: Vec3::ZERO,
-        }
+        Self { surface, emission: Vec3::ZERO }
     }
 }

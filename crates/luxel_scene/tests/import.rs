@@ -20,10 +20,7 @@ fn load_in(folder: &Path, name: &str, bytes: &[u8]) -> (World, Result<LoadReport
     let mut world = empty_world();
     let result = load(&path, &mut world).map_err(|error| error.to_string());
     if let Err(message) = &result {
-        assert!(
-            message.contains(name) && !message.contains('\n'),
-            "{message}"
-        );
+        assert!(message.contains(name) && !message.contains('\n'), "{message}");
     }
     (world, result)
 }
@@ -56,8 +53,7 @@ fn bad_triangles_are_dropped_counted_and_leave_the_ids_of_the_others() {
     let [mesh] = model_meshes(&world).try_into().unwrap();
     assert_eq!(mesh.mesh.triangle_ids, [0, 1, 11]);
     assert!(mesh.mesh.positions.iter().all(|p| p.is_finite()));
-    let corners =
-        mesh.mesh.triangles[2].map(|index| mesh.mesh.positions[index as usize].to_array());
+    let corners = mesh.mesh.triangles[2].map(|index| mesh.mesh.positions[index as usize].to_array());
     assert_eq!(corners, [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]);
 }
 
@@ -71,31 +67,14 @@ fn lines_that_cannot_be_read_are_named() {
         (&format!("{SQUARE}f /1 2 3\n"), 5),
     ] {
         let message = obj(text).1.unwrap_err();
-        assert!(
-            message.contains(&format!("model.obj:{line}: ")),
-            "{message}"
-        );
+        assert!(message.contains(&format!("model.obj:{line}: ")), "{message}");
     }
-    for text in [
-        "# nothing\n",
-        SQUARE,
-        "v 0 0 0\nf 1 1 1\n",
-        "\0\0\0",
-        "l 1 2\np 1\n",
-    ] {
+    for text in ["# nothing\n", SQUARE, "v 0 0 0\nf 1 1 1\n", "\0\0\0", "l 1 2\np 1\n"] {
         let message = obj(text).1.unwrap_err();
         assert!(message.contains("triangle"), "{message}");
     }
-    let utf16: Vec<u8> = [0xFF, 0xFE]
-        .into_iter()
-        .chain(b"v\0 \0".iter().copied())
-        .collect();
-    assert!(
-        load_bytes("model.obj", &utf16)
-            .1
-            .unwrap_err()
-            .contains("UTF-16")
-    );
+    let utf16: Vec<u8> = [0xFF, 0xFE].into_iter().chain(b"v\0 \0".iter().copied()).collect();
+    assert!(load_bytes("model.obj", &utf16).1.unwrap_err().contains("UTF-16"));
 }
 
 #[test]
@@ -125,12 +104,7 @@ fn parts_by_object_and_material_hang_below_one_root() {
     let names: Vec<_> = parts.iter().map(|part| part.1.as_str()).collect();
     assert_eq!(names, ["wall (red)", "wall (glass)", "lamp (lamp)", "lamp"]);
     let surfaces: Vec<_> = parts.iter().map(|part| part.2.surface).collect();
-    assert_eq!(
-        surfaces[0],
-        Surface::Lambert {
-            albedo: glam::Vec3::new(0.8, 0.1, 1.0)
-        }
-    );
+    assert_eq!(surfaces[0], Surface::Lambert { albedo: glam::Vec3::new(0.8, 0.1, 1.0) });
     assert_eq!(surfaces[1], Surface::Dielectric { ior: 1.33 });
     assert_eq!(parts[2].2.emission, glam::Vec3::new(5.0, 4.0, 3.0));
     assert_eq!(parts[3].2, Material::default());
@@ -153,10 +127,7 @@ fn a_missing_or_outside_material_file_is_a_warning() {
     for library in ["none.mtl", "../none.mtl", "/etc/passwd", "C:\\a.mtl", "a b"] {
         let (_, report) = obj(&format!("mtllib {library}\n{SQUARE}usemtl x\nf 1 2 3\n"));
         let report = report.unwrap();
-        assert!(
-            !report.warnings.is_empty() && report.dropped.is_empty(),
-            "{library}: {report:?}"
-        );
+        assert!(!report.warnings.is_empty() && report.dropped.is_empty(), "{library}: {report:?}");
     }
     let (_, report) = obj(&format!("{SQUARE}usemtl x\nf 1 2 3\n"));
     assert_eq!(report.unwrap().warnings.len(), 1);
@@ -172,9 +143,8 @@ fn forms_of_obj_lines() {
 
 #[test]
 fn no_prefix_of_an_obj_panics() {
-    let text = format!(
-        "mtllib a.mtl\n{SQUARE}o a\nusemtl b\nf 1/1/1 2/2/2 3/3/3 4\nf -1 -2 -3\ng c\nf 1 2 4"
-    );
+    let text =
+        format!("mtllib a.mtl\n{SQUARE}o a\nusemtl b\nf 1/1/1 2/2/2 3/3/3 4\nf -1 -2 -3\ng c\nf 1 2 4");
     for end in 0..=text.len() {
         let _ = obj(&text[..end]);
     }
@@ -184,10 +154,7 @@ fn no_prefix_of_an_obj_panics() {
 /// A file of two models: one at the origin, one turned, in a hidden layer or not.
 fn vox(hide_second: bool) -> Vec<u8> {
     let attributes = |pairs: &[(&str, &str)]| -> Dict {
-        pairs
-            .iter()
-            .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
-            .collect()
+        pairs.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect()
     };
     let transform = |child, layer_id, pairs: &[(&str, &str)]| SceneNode::Transform {
         attributes: Dict::new(),
@@ -197,10 +164,7 @@ fn vox(hide_second: bool) -> Vec<u8> {
     };
     let shape = |model_id| SceneNode::Shape {
         attributes: Dict::new(),
-        models: vec![ShapeModel {
-            model_id,
-            attributes: Dict::new(),
-        }],
+        models: vec![ShapeModel { model_id, attributes: Dict::new() }],
     };
     let voxel = |x, y, z, i| Voxel { x, y, z, i };
     let data = DotVoxData {
@@ -209,52 +173,26 @@ fn vox(hide_second: bool) -> Vec<u8> {
         models: vec![
             Model {
                 size: Size { x: 2, y: 1, z: 3 },
-                voxels: vec![
-                    voxel(0, 0, 0, 4),
-                    voxel(1, 0, 0, 5),
-                    voxel(0, 0, 2, 5),
-                    voxel(0, 7, 0, 5),
-                ],
+                voxels: vec![voxel(0, 0, 0, 4), voxel(1, 0, 0, 5), voxel(0, 0, 2, 5), voxel(0, 7, 0, 5)],
             },
-            Model {
-                size: Size { x: 1, y: 1, z: 1 },
-                voxels: vec![voxel(0, 0, 0, 6)],
-            },
+            Model { size: Size { x: 1, y: 1, z: 1 }, voxels: vec![voxel(0, 0, 0, 6)] },
         ],
-        palette: (0..=255)
-            .map(|i| Color {
-                r: i,
-                g: 255 - i,
-                b: 0,
-                a: 255,
-            })
-            .collect(),
+        palette: (0..=255).map(|i| Color { r: i, g: 255 - i, b: 0, a: 255 }).collect(),
         materials: vec![dot_vox::Material {
             id: 6,
             properties: attributes(&[("_type", "_glass"), ("_ior", "0.33")]),
         }],
         scenes: vec![
             transform(1, 0, &[]),
-            SceneNode::Group {
-                attributes: Dict::new(),
-                children: vec![2, 4],
-            },
+            SceneNode::Group { attributes: Dict::new(), children: vec![2, 4] },
             transform(3, 0, &[]),
             shape(0),
             transform(5, 1, &[("_t", "10 0 0"), ("_r", "33")]),
             shape(1),
         ],
         layers: vec![
-            Layer {
-                attributes: Dict::new(),
-            },
-            Layer {
-                attributes: attributes(if hide_second {
-                    &[("_hidden", "1")]
-                } else {
-                    &[]
-                }),
-            },
+            Layer { attributes: Dict::new() },
+            Layer { attributes: attributes(if hide_second { &[("_hidden", "1")] } else { &[] }) },
         ],
     };
     let mut bytes = Vec::new();
@@ -263,29 +201,18 @@ fn vox(hide_second: bool) -> Vec<u8> {
 }
 
 fn only_grid(world: &World) -> VoxelGrid {
-    let [(_, volume)] = world
-        .resource::<Assets>()
-        .volumes()
-        .collect::<Vec<_>>()
-        .try_into()
-        .unwrap();
+    let [(_, volume)] = world.resource::<Assets>().volumes().collect::<Vec<_>>().try_into().unwrap();
     volume.grid.clone()
 }
 
 #[test]
 fn a_vox_scene_becomes_one_upright_grid() {
     let (world, report) = load_bytes("a.vox", &vox(false));
-    assert_eq!(
-        report.unwrap().dropped,
-        ["a.vox: dropped 1 of 5 voxels (outside their model)"]
-    );
+    assert_eq!(report.unwrap().dropped, ["a.vox: dropped 1 of 5 voxels (outside their model)"]);
     let grid = only_grid(&world);
     // Model 0 fills x −1..1 and z −1..2 of MagicaVoxel; its z is our y. Model 1 stands 10 to the right.
-    let mut cells: Vec<_> = grid
-        .voxels
-        .iter()
-        .map(|v| (v.cell, grid.palette[usize::from(v.palette)]))
-        .collect();
+    let mut cells: Vec<_> =
+        grid.voxels.iter().map(|v| (v.cell, grid.palette[usize::from(v.palette)])).collect();
     cells.sort_by_key(|(cell, _)| *cell);
     let places: Vec<_> = cells.iter().map(|(cell, _)| *cell).collect();
     assert_eq!(places[..3], [[0, 0, 0], [0, 2, 0], [1, 0, 0]]);
@@ -293,13 +220,8 @@ fn a_vox_scene_becomes_one_upright_grid() {
     assert_eq!(places[3][0], 11);
     assert_eq!(grid.palette.len(), 3, "only the entries in use");
     assert_eq!(cells[1].1.surface, Surface::Dielectric { ior: 1.33 });
-    let Surface::Lambert { albedo } = cells[0].1.surface else {
-        panic!("matt")
-    };
-    assert!(
-        (albedo.y - (251f32 / 255.0).powf(2.2)).abs() < 0.02,
-        "sRGB to linear: {albedo}"
-    );
+    let Surface::Lambert { albedo } = cells[0].1.surface else { panic!("matt") };
+    assert!((albedo.y - (251f32 / 255.0).powf(2.2)).abs() < 0.02, "sRGB to linear: {albedo}");
     let (world, _) = load_bytes("a.vox", &vox(true));
     assert_eq!(only_grid(&world).voxels.len(), 3, "hidden layer");
 }
@@ -309,10 +231,7 @@ fn no_prefix_and_no_changed_byte_of_a_vox_panics() {
     let bytes = vox(false);
     let folder = tempfile::tempdir().unwrap();
     for end in 0..bytes.len() {
-        assert!(
-            load_in(folder.path(), "a.vox", &bytes[..end]).1.is_err(),
-            "{end}"
-        );
+        assert!(load_in(folder.path(), "a.vox", &bytes[..end]).1.is_err(), "{end}");
     }
     for at in 0..bytes.len() {
         for value in [1, 0xFF] {
@@ -332,43 +251,24 @@ fn nested_chunks_end_in_an_error_not_in_a_stack_overflow() {
         bytes.extend(0u32.to_le_bytes());
         bytes.extend(((depth - level - 1) * 12).to_le_bytes());
     }
-    assert!(
-        load_bytes("deep.vox", &bytes)
-            .1
-            .unwrap_err()
-            .contains("byte 20")
-    );
+    assert!(load_bytes("deep.vox", &bytes).1.unwrap_err().contains("byte 20"));
 }
 
 #[test]
 fn a_model_scene_has_ground_sky_lamp_and_camera() {
     let (mut world, _) = load_bytes("a.vox", &vox(true));
-    assert_eq!(
-        world
-            .query::<(&Camera, &ActiveCamera)>()
-            .iter(&world)
-            .count(),
-        1
-    );
-    let lamps = world
-        .query::<(&Sphere, &Material)>()
-        .iter(&world)
-        .filter(|(_, m)| m.emission.x > 1.0)
-        .count();
+    assert_eq!(world.query::<(&Camera, &ActiveCamera)>().iter(&world).count(), 1);
+    let lamps =
+        world.query::<(&Sphere, &Material)>().iter(&world).filter(|(_, m)| m.emission.x > 1.0).count();
     assert_eq!(lamps, 1);
-    let (transform, _) = world
-        .query::<(&Transform, &MeshInstance)>()
-        .single(&world)
-        .unwrap();
+    let (transform, _) = world.query::<(&Transform, &MeshInstance)>().single(&world).unwrap();
     assert!(transform.translation.y < 0.0 && transform.translation.y > -0.1);
 }
 
 #[allow(clippy::print_stdout)]
 /// `shared/data` beside the workspace; its absence fails under CI and is said elsewhere.
 fn shared(folder: &str, ending: &str) -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../../shared/data")
-        .join(folder);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(folder);
     let mut found = Vec::new();
     let mut folders = vec![root.clone()];
     while let Some(folder) = folders.pop() {
@@ -376,20 +276,13 @@ fn shared(folder: &str, ending: &str) -> Vec<PathBuf> {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else if path
-                .extension()
-                .is_some_and(|e| e.eq_ignore_ascii_case(ending))
-            {
+            } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending)) {
                 found.push(path);
             }
         }
     }
     let required = std::env::var("CI").is_ok_and(|ci| ci == "true");
-    assert!(
-        !(found.is_empty() && required),
-        "{} is missing",
-        root.display()
-    );
+    assert!(!(found.is_empty() && required), "{} is missing", root.display());
     println!("{}: {} .{ending} files", root.display(), found.len());
     found
 }
@@ -400,17 +293,8 @@ fn collected_models_load() {
         let result = load(&path, &mut empty_world());
         assert!(result.is_ok(), "{result:?}");
     }
-    for name in [
-        "stanford-bunny.obj",
-        "teapot.obj",
-        "spot.obj",
-        "suzanne.obj",
-        "cow.obj",
-    ] {
-        for path in shared("meshes", "obj")
-            .iter()
-            .filter(|path| path.ends_with(name))
-        {
+    for name in ["stanford-bunny.obj", "teapot.obj", "spot.obj", "suzanne.obj", "cow.obj"] {
+        for path in shared("meshes", "obj").iter().filter(|path| path.ends_with(name)) {
             let result = load(path, &mut empty_world());
             assert!(result.is_ok(), "{result:?}");
         }
@@ -430,14 +314,8 @@ fn collected_hostile_files_end_in_a_scene_or_in_one_clear_line() {
                 }
             }
             Err(error) => {
-                let (text, name) = (
-                    error.to_string(),
-                    path.file_name().unwrap().to_string_lossy(),
-                );
-                assert!(
-                    text.contains(name.as_ref()) && !text.contains('\n'),
-                    "{text}"
-                );
+                let (text, name) = (error.to_string(), path.file_name().unwrap().to_string_lossy());
+                assert!(text.contains(name.as_ref()) && !text.contains('\n'), "{text}");
             }
         }
     }

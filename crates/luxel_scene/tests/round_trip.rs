@@ -39,14 +39,9 @@ fn snapshot(world: &World) -> BTreeMap<StableId, Snapshot> {
             });
             let material = entity.get::<Material>().map(|m| {
                 // Debug prints the shortest text that reads back to the same bits, sign included.
-                (
-                    format!("{:?}", m.surface),
-                    m.emission.to_array().map(f32::to_bits),
-                )
+                (format!("{:?}", m.surface), m.emission.to_array().map(f32::to_bits))
             });
-            let parent = entity
-                .get::<ChildOf>()
-                .map(|c| *world.get::<StableId>(c.parent()).unwrap());
+            let parent = entity.get::<ChildOf>().map(|c| *world.get::<StableId>(c.parent()).unwrap());
             let camera = entity
                 .get::<Camera>()
                 .map(|c| [c.vertical_fov, c.lens_radius, c.focus_distance].map(f64::to_bits));
@@ -71,10 +66,7 @@ fn assert_same(a: &World, b: &World) {
     assert_eq!(snapshot(a), snapshot(b));
     assert_eq!(a.resource::<Assets>(), b.resource::<Assets>());
     assert_eq!(a.resource::<Environment>(), b.resource::<Environment>());
-    assert_eq!(
-        a.resource::<RenderSettings>(),
-        b.resource::<RenderSettings>()
-    );
+    assert_eq!(a.resource::<RenderSettings>(), b.resource::<RenderSettings>());
     assert_eq!(a.resource::<StableIds>(), b.resource::<StableIds>());
     assert_eq!(world_hash(a).unwrap(), world_hash(b).unwrap());
 }
@@ -157,23 +149,17 @@ struct AnyEntity {
 }
 
 fn any_entity() -> impl Strategy<Value = AnyEntity> {
-    let camera = (
-        1e-6..3.125,
-        prop_oneof![Just(0.0), 1e-9..1.0],
-        positive_f64(),
-    );
+    let camera = (1e-6..3.125, prop_oneof![Just(0.0), 1e-9..1.0], positive_f64());
     let kind = prop_oneof![
         Just(Kind::Group),
         positive_f64().prop_map(Kind::Sphere),
         (0usize..4).prop_map(Kind::Mesh),
         (0usize..3).prop_map(Kind::Volume),
-        camera.prop_map(
-            |(vertical_fov, lens_radius, focus_distance)| Kind::Camera(Camera {
-                vertical_fov,
-                lens_radius,
-                focus_distance,
-            })
-        ),
+        camera.prop_map(|(vertical_fov, lens_radius, focus_distance)| Kind::Camera(Camera {
+            vertical_fov,
+            lens_radius,
+            focus_distance,
+        })),
     ];
     (
         kind,
@@ -184,28 +170,22 @@ fn any_entity() -> impl Strategy<Value = AnyEntity> {
         any::<Option<bool>>(),
         proptest::bool::weighted(0.1),
     )
-        .prop_map(
-            |(kind, name, parent, transform, material, visible, deleted)| AnyEntity {
-                kind,
-                name,
-                parent,
-                transform,
-                material,
-                visible,
-                deleted,
-            },
-        )
+        .prop_map(|(kind, name, parent, transform, material, visible, deleted)| AnyEntity {
+            kind,
+            name,
+            parent,
+            transform,
+            material,
+            visible,
+            deleted,
+        })
 }
 
 fn any_environment() -> impl Strategy<Value = Environment> {
     let three = (any_colour(1e6), any_colour(1e6), any_colour(1e6));
     prop_oneof![
         any_colour(1e6).prop_map(Environment::Constant),
-        three.prop_map(|(zenith, horizon, ground)| Environment::Gradient {
-            zenith,
-            horizon,
-            ground
-        }),
+        three.prop_map(|(zenith, horizon, ground)| Environment::Gradient { zenith, horizon, ground }),
     ]
 }
 
@@ -218,28 +198,21 @@ fn any_settings() -> impl Strategy<Value = RenderSettings> {
     ];
     let sizes = (1u32..=16384, 1u32..=16384, 1u32.., 0u32..=65535);
     (sizes, any::<u32>(), any::<u32>(), -64f32..=64.0, tone_map).prop_map(
-        |((width, height, spp, max_depth), roulette_depth, seed, exposure, tone_map)| {
-            RenderSettings {
-                width,
-                height,
-                spp,
-                max_depth,
-                roulette_depth,
-                seed,
-                exposure,
-                tone_map,
-            }
+        |((width, height, spp, max_depth), roulette_depth, seed, exposure, tone_map)| RenderSettings {
+            width,
+            height,
+            spp,
+            max_depth,
+            roulette_depth,
+            seed,
+            exposure,
+            tone_map,
         },
     )
 }
 
 /// A world with assets of every kind of source, the files in `folder`.
-fn build(
-    folder: &Path,
-    entities: &[AnyEntity],
-    environment: Environment,
-    settings: RenderSettings,
-) -> World {
+fn build(folder: &Path, entities: &[AnyEntity], environment: Environment, settings: RenderSettings) -> World {
     let mut world = empty_world();
     world.insert_resource(environment);
     world.insert_resource(settings);
@@ -252,12 +225,8 @@ fn build(
         match entity.kind {
             Kind::Group => {}
             Kind::Sphere(radius) => drop(new.insert(Sphere { radius })),
-            Kind::Mesh(index) => drop(new.insert(MeshInstance {
-                mesh: meshes[index],
-            })),
-            Kind::Volume(index) => drop(new.insert(VoxelVolume {
-                volume: volumes[index],
-            })),
+            Kind::Mesh(index) => drop(new.insert(MeshInstance { mesh: meshes[index] })),
+            Kind::Volume(index) => drop(new.insert(VoxelVolume { volume: volumes[index] })),
             Kind::Camera(camera) => {
                 new.insert(camera);
                 if !has_camera && !entity.deleted {
@@ -289,19 +258,11 @@ fn build(
 
 fn insert_assets(folder: &Path, assets: &mut Assets) -> (Vec<AssetId>, Vec<AssetId>) {
     let obj = folder.join("two.obj");
-    fs::write(
-        &obj,
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\no a\nf 1 2 3\no b\nf 3 2 1\nf 1 2 9\n",
-    )
-    .unwrap();
+    fs::write(&obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\no a\nf 1 2 3\no b\nf 3 2 1\nf 1 2 9\n").unwrap();
     let unused = assets.insert_mesh(MeshAsset::from_source(MeshSource::Cube).unwrap());
     let meshes = [
         MeshSource::Quad,
-        MeshSource::Terrain {
-            seed: 3,
-            cells: 4,
-            height: 0.1,
-        },
+        MeshSource::Terrain { seed: 3, cells: 4, height: 0.1 },
         MeshSource::File(obj.clone()),
         MeshSource::FilePart(obj, 1),
     ]
@@ -364,15 +325,9 @@ fn a_world_that_no_file_may_hold_is_not_saved_and_the_old_file_stays() {
     let path = folder.path().join("scene.ron");
     fs::write(&path, "old").unwrap();
     let mut world = empty_world();
-    spawn(
-        &mut world,
-        (Name("ball".to_owned()), Sphere { radius: f64::NAN }),
-    );
+    spawn(&mut world, (Name("ball".to_owned()), Sphere { radius: f64::NAN }));
     let message = save(&world, &path).unwrap_err().to_string();
-    assert!(
-        message
-            .ends_with("entity 1 \"ball\": sphere.radius must be positive and finite, but is NaN")
-    );
+    assert!(message.ends_with("entity 1 \"ball\": sphere.radius must be positive and finite, but is NaN"));
     assert_eq!(fs::read(&path).unwrap(), b"old");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
@@ -380,13 +335,8 @@ fn a_world_that_no_file_may_hold_is_not_saved_and_the_old_file_stays() {
 #[test]
 fn saving_into_a_folder_that_is_none_is_one_clear_error() {
     let folder = tempfile::tempdir().unwrap();
-    let message = save(&empty_world(), &folder.path().join("no/scene.ron"))
-        .unwrap_err()
-        .to_string();
-    assert!(
-        message.contains("scene.ron: cannot be written"),
-        "{message}"
-    );
+    let message = save(&empty_world(), &folder.path().join("no/scene.ron")).unwrap_err().to_string();
+    assert!(message.contains("scene.ron: cannot be written"), "{message}");
     let message = save(&empty_world(), folder.path()).unwrap_err().to_string();
     assert!(message.contains("cannot be written"), "{message}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);

@@ -14,9 +14,7 @@ fn load_text(text: &str) -> Result<bevy_ecs::world::World, String> {
     match load(&path, &mut world) {
         Ok(_) => Ok(world),
         Err(error) => {
-            let untouched = world
-                .try_query::<&StableId>()
-                .is_none_or(|mut q| q.iter(&world).count() == 0);
+            let untouched = world.try_query::<&StableId>().is_none_or(|mut q| q.iter(&world).count() == 0);
             assert!(untouched, "a failed load left entities");
             let message = error.to_string();
             assert!(!message.contains('\n'), "{message}");
@@ -32,282 +30,99 @@ fn entity(fields: &str) -> String {
 
 /// Field of entity 3 "ball", what is written, the rule in the message.
 const ENTITY_MISTAKES: &[(&str, &str, &str)] = &[
-    (
-        "sphere.radius",
-        "sphere: (radius: 0.0)",
-        "must be positive and finite, but is 0.0",
-    ),
-    (
-        "sphere.radius",
-        "sphere: (radius: -1)",
-        "must be positive and finite, but is -1.0",
-    ),
-    (
-        "sphere.radius",
-        "sphere: (radius: NaN)",
-        "must be positive and finite, but is NaN",
-    ),
-    (
-        "sphere.radius",
-        "sphere: (radius: inf)",
-        "must be positive and finite, but is inf",
-    ),
-    (
-        "sphere, mesh and voxels",
-        "sphere: (radius: 1), mesh: 1",
-        "exclude one another",
-    ),
-    (
-        "transform.translation",
-        "transform: (translation: (0, NaN, 0))",
-        "must be finite",
-    ),
-    (
-        "transform.translation",
-        "transform: (translation: (1e999, 0, 0))",
-        "must be finite",
-    ),
-    (
-        "transform.scale",
-        "transform: (scale: (1, 0, 1))",
-        "must be non-zero on each axis",
-    ),
-    (
-        "transform.scale",
-        "transform: (scale: (1, -inf, 1))",
-        "must be finite",
-    ),
-    (
-        "transform.rotation",
-        "transform: (rotation: (0, 0, 0, 2))",
-        "quaternion (x, y, z, w) of length 1",
-    ),
-    (
-        "transform.rotation",
-        "transform: (rotation: (NaN, 0, 0, 1))",
-        "quaternion (x, y, z, w) of length 1",
-    ),
-    (
-        "transform.rotation_degrees",
-        "transform: (rotation_degrees: (0, inf, 0))",
-        "must be finite",
-    ),
-    (
-        "transform.look_at",
-        "transform: (look_at: (0, 0, 0))",
-        "another place",
-    ),
-    (
-        "transform.look_at",
-        "transform: (look_at: (0, 0, NaN))",
-        "must be finite",
-    ),
+    ("sphere.radius", "sphere: (radius: 0.0)", "must be positive and finite, but is 0.0"),
+    ("sphere.radius", "sphere: (radius: -1)", "must be positive and finite, but is -1.0"),
+    ("sphere.radius", "sphere: (radius: NaN)", "must be positive and finite, but is NaN"),
+    ("sphere.radius", "sphere: (radius: inf)", "must be positive and finite, but is inf"),
+    ("sphere, mesh and voxels", "sphere: (radius: 1), mesh: 1", "exclude one another"),
+    ("transform.translation", "transform: (translation: (0, NaN, 0))", "must be finite"),
+    ("transform.translation", "transform: (translation: (1e999, 0, 0))", "must be finite"),
+    ("transform.scale", "transform: (scale: (1, 0, 1))", "must be non-zero on each axis"),
+    ("transform.scale", "transform: (scale: (1, -inf, 1))", "must be finite"),
+    ("transform.rotation", "transform: (rotation: (0, 0, 0, 2))", "quaternion (x, y, z, w) of length 1"),
+    ("transform.rotation", "transform: (rotation: (NaN, 0, 0, 1))", "quaternion (x, y, z, w) of length 1"),
+    ("transform.rotation_degrees", "transform: (rotation_degrees: (0, inf, 0))", "must be finite"),
+    ("transform.look_at", "transform: (look_at: (0, 0, 0))", "another place"),
+    ("transform.look_at", "transform: (look_at: (0, 0, NaN))", "must be finite"),
     (
         "transform.rotation, rotation_degrees and look_at",
         "transform: (look_at: (0, 0, 1), rotation_degrees: (0, 0, 0))",
         "exclude one another",
     ),
-    (
-        "material.emission",
-        "material: (surface: Dielectric(ior: 1.5), emission: (0, -1, 0))",
-        "not negative",
-    ),
+    ("material.emission", "material: (surface: Dielectric(ior: 1.5), emission: (0, -1, 0))", "not negative"),
     (
         "material.emission",
         "material: (surface: Dielectric(ior: 1.5), emission: (inf, 0, 0))",
         "must be finite",
     ),
-    (
-        "material.surface.albedo",
-        "material: (surface: Lambert(albedo: (0.5, 1.1, 0)))",
-        "in 0 to 1",
-    ),
-    (
-        "material.surface.albedo",
-        "material: (surface: Metal(albedo: (NaN, 1, 0), fuzz: 0))",
-        "in 0 to 1",
-    ),
-    (
-        "material.surface.fuzz",
-        "material: (surface: Metal(albedo: (1, 1, 1), fuzz: 1.5))",
-        "in 0.0 to 1.0",
-    ),
-    (
-        "material.surface.ior",
-        "material: (surface: Dielectric(ior: 0.9))",
-        "at least 1",
-    ),
-    (
-        "material.surface.ior",
-        "material: (surface: Dielectric(ior: inf))",
-        "finite",
-    ),
-    (
-        "camera.vertical_fov_degrees",
-        "camera: (vertical_fov_degrees: 180)",
-        "between 0 and 180",
-    ),
-    (
-        "camera.vertical_fov_degrees",
-        "camera: (vertical_fov_degrees: NaN)",
-        "between 0 and 180",
-    ),
-    (
-        "camera.vertical_fov",
-        "camera: (vertical_fov: 3.2)",
-        "between 0 and π",
-    ),
+    ("material.surface.albedo", "material: (surface: Lambert(albedo: (0.5, 1.1, 0)))", "in 0 to 1"),
+    ("material.surface.albedo", "material: (surface: Metal(albedo: (NaN, 1, 0), fuzz: 0))", "in 0 to 1"),
+    ("material.surface.fuzz", "material: (surface: Metal(albedo: (1, 1, 1), fuzz: 1.5))", "in 0.0 to 1.0"),
+    ("material.surface.ior", "material: (surface: Dielectric(ior: 0.9))", "at least 1"),
+    ("material.surface.ior", "material: (surface: Dielectric(ior: inf))", "finite"),
+    ("camera.vertical_fov_degrees", "camera: (vertical_fov_degrees: 180)", "between 0 and 180"),
+    ("camera.vertical_fov_degrees", "camera: (vertical_fov_degrees: NaN)", "between 0 and 180"),
+    ("camera.vertical_fov", "camera: (vertical_fov: 3.2)", "between 0 and π"),
     (
         "camera.vertical_fov and vertical_fov_degrees",
         "camera: (vertical_fov: 1, vertical_fov_degrees: 50)",
         "exclude one another",
     ),
-    (
-        "camera.lens_radius",
-        "camera: (lens_radius: -0.1)",
-        "not negative",
-    ),
-    (
-        "camera.focus_distance",
-        "camera: (focus_distance: 0)",
-        "must be positive",
-    ),
-    (
-        "parent",
-        "parent: 9",
-        "names entity 9, which does not exist",
-    ),
+    ("camera.lens_radius", "camera: (lens_radius: -0.1)", "not negative"),
+    ("camera.focus_distance", "camera: (focus_distance: 0)", "must be positive"),
+    ("parent", "parent: 9", "names entity 9, which does not exist"),
     ("parent", "parent: 3", "leads back to the entity itself"),
     ("mesh", "mesh: 2", "names mesh 2, which does not exist"),
-    (
-        "voxels",
-        "voxels: 1",
-        "names volume 1, which does not exist",
-    ),
+    ("voxels", "voxels: 1", "names volume 1, which does not exist"),
 ];
 
 #[test]
 fn every_number_of_an_entity_is_checked() {
     for (field, text, rule) in ENTITY_MISTAKES {
-        let message = load_text(&entity(text))
-            .err()
-            .unwrap_or_else(|| panic!("{text} was taken"));
-        assert!(
-            message.starts_with(&format!("bad.ron: entity 3 \"ball\": {field} ")),
-            "{message}"
-        );
+        let message = load_text(&entity(text)).err().unwrap_or_else(|| panic!("{text} was taken"));
+        assert!(message.starts_with(&format!("bad.ron: entity 3 \"ball\": {field} ")), "{message}");
         assert!(message.contains(rule), "{text}: {message}");
     }
 }
 
 /// A whole file's fields after `version: 1`, and what the message holds.
 const FILE_MISTAKES: &[(&str, &str)] = &[
-    (
-        "environment: Constant((-1, 0, 0))",
-        "environment: constant must be finite and not negative",
-    ),
-    (
-        "environment: Gradient(zenith: (0,0,0), horizon: (0,0,0), ground: (0,NaN,0))",
-        "environment: ground",
-    ),
-    (
-        "settings: (width: 0)",
-        "settings: width must be in 1 to 16384, but is 0",
-    ),
-    (
-        "settings: (height: 16385)",
-        "settings: height must be in 1 to 16384",
-    ),
+    ("environment: Constant((-1, 0, 0))", "environment: constant must be finite and not negative"),
+    ("environment: Gradient(zenith: (0,0,0), horizon: (0,0,0), ground: (0,NaN,0))", "environment: ground"),
+    ("settings: (width: 0)", "settings: width must be in 1 to 16384, but is 0"),
+    ("settings: (height: 16385)", "settings: height must be in 1 to 16384"),
     ("settings: (spp: 0)", "settings: spp must be in 1 to"),
-    (
-        "settings: (exposure: NaN)",
-        "settings: exposure must be in -64.0 to 64.0, but is NaN",
-    ),
+    ("settings: (exposure: NaN)", "settings: exposure must be in -64.0 to 64.0, but is NaN"),
     ("meshes: {0: Quad}", "mesh 0: id must be in 1 to"),
-    (
-        "meshes: {1: Icosphere(subdivisions: 9)}",
-        "mesh 1: subdivisions must be in 0 to 8",
-    ),
-    (
-        "meshes: {1: TorusKnot(p: 0, q: 3, tube: 0.1, segments: 9, sides: 9)}",
-        "mesh 1: p must be",
-    ),
-    (
-        "meshes: {1: TorusKnot(p: 2, q: 3, tube: NaN, segments: 9, sides: 9)}",
-        "mesh 1: tube must be",
-    ),
-    (
-        "meshes: {1: Terrain(seed: 1, cells: 4, height: 0)}",
-        "mesh 1: height must be positive",
-    ),
-    (
-        "meshes: {1: File(\"/etc/passwd\")}",
-        "mesh 1: path must be relative",
-    ),
-    (
-        "meshes: {1: File(\"http://example.org/a.obj\")}",
-        "mesh 1: path must be relative",
-    ),
-    (
-        "meshes: {1: File(\"C:\\\\a.obj\")}",
-        "mesh 1: path must be relative",
-    ),
+    ("meshes: {1: Icosphere(subdivisions: 9)}", "mesh 1: subdivisions must be in 0 to 8"),
+    ("meshes: {1: TorusKnot(p: 0, q: 3, tube: 0.1, segments: 9, sides: 9)}", "mesh 1: p must be"),
+    ("meshes: {1: TorusKnot(p: 2, q: 3, tube: NaN, segments: 9, sides: 9)}", "mesh 1: tube must be"),
+    ("meshes: {1: Terrain(seed: 1, cells: 4, height: 0)}", "mesh 1: height must be positive"),
+    ("meshes: {1: File(\"/etc/passwd\")}", "mesh 1: path must be relative"),
+    ("meshes: {1: File(\"http://example.org/a.obj\")}", "mesh 1: path must be relative"),
+    ("meshes: {1: File(\"C:\\\\a.obj\")}", "mesh 1: path must be relative"),
     ("meshes: {1: File(\"\")}", "mesh 1: path must be relative"),
-    (
-        "meshes: {1: File(\"none.obj\")}",
-        "none.obj: cannot be read",
-    ),
+    ("meshes: {1: File(\"none.obj\")}", "none.obj: cannot be read"),
     ("meshes: {1: File(\".\")}", "is not a regular file"),
-    (
-        "volumes: {1: Menger(level: 6)}",
-        "volume 1: level must be in 0 to 5",
-    ),
-    (
-        "volumes: {1: Island(size: 8, seed: 1)}",
-        "volume 1: size must be in 16 to 512",
-    ),
-    (
-        "volumes: {1: File(\"none.vox\")}",
-        "none.vox: cannot be read",
-    ),
-    (
-        "meshes: {1: Quad}, volumes: {1: Menger(level: 1)}",
-        "volume 1: id is a mesh's id too",
-    ),
-    (
-        "scatter: [(count: 0, seed: 1, min: (0,0,0), max: (1,1,1), radius: (1, 2))]",
-        "scatter 0: count",
-    ),
-    (
-        "scatter: [(count: 9, seed: 1, min: (0,2,0), max: (1,1,1), radius: (1, 2))]",
-        "scatter 0: max",
-    ),
-    (
-        "scatter: [(count: 9, seed: 1, min: (0,0,0), max: (1,1,1), radius: (2, 1))]",
-        "scatter 0: radius",
-    ),
+    ("volumes: {1: Menger(level: 6)}", "volume 1: level must be in 0 to 5"),
+    ("volumes: {1: Island(size: 8, seed: 1)}", "volume 1: size must be in 16 to 512"),
+    ("volumes: {1: File(\"none.vox\")}", "none.vox: cannot be read"),
+    ("meshes: {1: Quad}, volumes: {1: Menger(level: 1)}", "volume 1: id is a mesh's id too"),
+    ("scatter: [(count: 0, seed: 1, min: (0,0,0), max: (1,1,1), radius: (1, 2))]", "scatter 0: count"),
+    ("scatter: [(count: 9, seed: 1, min: (0,2,0), max: (1,1,1), radius: (1, 2))]", "scatter 0: max"),
+    ("scatter: [(count: 9, seed: 1, min: (0,0,0), max: (1,1,1), radius: (2, 1))]", "scatter 0: radius"),
     ("entities: [(id: 0)]", "entity 0: id must be in 1 to"),
-    (
-        "entities: [(id: 2), (id: 2)]",
-        "entity 2: id is used by another entity",
-    ),
-    (
-        "entities: [(id: 1, parent: 2), (id: 2, parent: 1)]",
-        "parent leads back",
-    ),
-    (
-        "active_camera: 1, entities: [(id: 1)]",
-        "file: active_camera names entity 1, which is not a camera",
-    ),
+    ("entities: [(id: 2), (id: 2)]", "entity 2: id is used by another entity"),
+    ("entities: [(id: 1, parent: 2), (id: 2, parent: 1)]", "parent leads back"),
+    ("active_camera: 1, entities: [(id: 1)]", "file: active_camera names entity 1, which is not a camera"),
     ("next_id: 0", "file: next_id must be in 1 to"),
 ];
 
 #[test]
 fn every_section_is_checked() {
     for (text, expected) in FILE_MISTAKES {
-        let message = load_text(&format!("(version: 1, {text})"))
-            .err()
-            .unwrap_or_else(|| panic!("{text} was taken"));
+        let message =
+            load_text(&format!("(version: 1, {text})")).err().unwrap_or_else(|| panic!("{text} was taken"));
         assert!(message.contains(expected), "{text}: {message}");
     }
 }
@@ -319,14 +134,8 @@ fn syntax_errors_name_line_and_column() {
         ("(version: 1,\n entities: [(id: \"a\")])", "bad.ron:2:17"),
         ("(version: 1,\n", "bad.ron:1:13"),
         ("(version: 1, sky: 3)", "bad.ron:1:14"),
-        (
-            "(version: 1, entities: [(sphere: (radius: 1, colour: 2))])",
-            "bad.ron:1:",
-        ),
-        (
-            "(version: 1, entities: [(material: (surface: Lambert(albedo: (1, 1, 1), x: 2)))])",
-            "bad.ron:1:",
-        ),
+        ("(version: 1, entities: [(sphere: (radius: 1, colour: 2))])", "bad.ron:1:"),
+        ("(version: 1, entities: [(material: (surface: Lambert(albedo: (1, 1, 1), x: 2)))])", "bad.ron:1:"),
         ("(version: 1, settings: (tone_map: Filmic))", "bad.ron:1:35"),
         ("(entities: [])", "bad.ron:1:"),
         ("\u{FEFF}rubbish", "bad.ron:1:"),
@@ -335,9 +144,7 @@ fn syntax_errors_name_line_and_column() {
         let message = load_text(text).err().unwrap();
         assert!(message.starts_with(expected), "{text}: {message}");
     }
-    let unknown = load_text("(version: 1, entities: [(sphere: (radius: 1), colour: 2)])")
-        .err()
-        .unwrap();
+    let unknown = load_text("(version: 1, entities: [(sphere: (radius: 1), colour: 2)])").err().unwrap();
     assert!(unknown.contains("colour"), "{unknown}");
 }
 
@@ -345,15 +152,9 @@ fn syntax_errors_name_line_and_column() {
 fn other_versions_are_refused_clearly() {
     let newer = load_text("(version: 2, entities: [(hologram: Yes(deeply: [1, 2]))], soul: 3)");
     let newer = newer.err().unwrap();
-    assert!(
-        newer.contains("version 2") && newer.contains("a newer Luxel is needed"),
-        "{newer}"
-    );
+    assert!(newer.contains("version 2") && newer.contains("a newer Luxel is needed"), "{newer}");
     let older = load_text("(version: 0)").err().unwrap();
-    assert!(
-        older.contains("version 0") && !older.contains("newer"),
-        "{older}"
-    );
+    assert!(older.contains("version 0") && !older.contains("newer"), "{older}");
 }
 
 #[test]
@@ -376,10 +177,7 @@ fn a_path_that_is_no_scene_is_one_clear_error() {
         ("a.xyz", "unknown kind of file"),
     ] {
         let message = load(&at(name), &mut empty_world()).unwrap_err().to_string();
-        assert!(
-            message.starts_with(&at(name).display().to_string()),
-            "{message}"
-        );
+        assert!(message.starts_with(&at(name).display().to_string()), "{message}");
         assert!(message.contains(expected), "{name}: {message}");
     }
 }
@@ -388,23 +186,16 @@ fn a_path_that_is_no_scene_is_one_clear_error() {
 fn deep_hierarchies_end_in_an_error_not_in_a_stack_overflow() {
     let chain = |length: u32| {
         let entities: String = (1..=length)
-            .map(|id| {
-                if id == 1 {
-                    "(id: 1),".to_owned()
-                } else {
-                    format!("(id: {id}, parent: {}),", id - 1)
-                }
-            })
+            .map(
+                |id| {
+                    if id == 1 { "(id: 1),".to_owned() } else { format!("(id: {id}, parent: {}),", id - 1) }
+                },
+            )
             .collect();
         load_text(&format!("(version: 1, entities: [{entities}])"))
     };
     assert!(chain(1024).is_ok());
-    assert!(
-        chain(1025)
-            .err()
-            .unwrap()
-            .contains("parent chain is longer than 1024")
-    );
+    assert!(chain(1025).err().unwrap().contains("parent chain is longer than 1024"));
     assert!(chain(20_000).is_err());
     let nested = format!("(version: 1, entities: {})", "[".repeat(100_000));
     assert!(load_text(&nested).is_err());
@@ -431,30 +222,18 @@ fn conveniences_of_hand_written_files_become_plain_components() {
     )
     .unwrap();
     use luxel_scene::{ActiveCamera, Camera};
-    let (id, mesh, transform) = world
-        .query::<(&StableId, &MeshInstance, &Transform)>()
-        .single(&world)
-        .unwrap();
+    let (id, mesh, transform) =
+        world.query::<(&StableId, &MeshInstance, &Transform)>().single(&world).unwrap();
     assert_eq!((id.0, mesh.mesh.0), (10, 4));
     let up = transform.affine().transform_vector3(glam::DVec3::Y);
     assert!(up.distance(glam::DVec3::Z) < 1e-12, "{up}");
-    let mut cameras = world
-        .query_filtered::<(&StableId, &Camera, &Transform), bevy_ecs::prelude::With<ActiveCamera>>(
-        );
+    let mut cameras =
+        world.query_filtered::<(&StableId, &Camera, &Transform), bevy_ecs::prelude::With<ActiveCamera>>();
     let (id, camera, transform) = cameras.single(&world).unwrap();
     assert_eq!((id.0, camera.focus_distance), (7, 5.0));
     assert!((camera.vertical_fov - std::f64::consts::FRAC_PI_3).abs() < 1e-12);
-    assert!(
-        transform
-            .affine()
-            .transform_vector3(-glam::DVec3::Z)
-            .distance(-glam::DVec3::Z)
-            < 1e-12
-    );
-    let spheres: Vec<_> = world
-        .query::<(&StableId, &Sphere, &Transform)>()
-        .iter(&world)
-        .collect();
+    assert!(transform.affine().transform_vector3(-glam::DVec3::Z).distance(-glam::DVec3::Z) < 1e-12);
+    let spheres: Vec<_> = world.query::<(&StableId, &Sphere, &Transform)>().iter(&world).collect();
     assert_eq!(spheres.len(), 5);
     for (id, sphere, transform) in spheres {
         assert!((11..16).contains(&id.0));
@@ -468,10 +247,7 @@ fn every_example_scene_loads_and_survives_saving() {
     let folder = tempfile::tempdir().unwrap();
     let mut count = 0;
     for dir in [assets.clone(), assets.join("furnace")] {
-        for path in fs::read_dir(dir)
-            .unwrap()
-            .map(|entry| entry.unwrap().path())
-        {
+        for path in fs::read_dir(dir).unwrap().map(|entry| entry.unwrap().path()) {
             if path.extension().is_some_and(|ending| ending == "ron") {
                 let mut world = empty_world();
                 let report = load(&path, &mut world).unwrap_or_else(|error| panic!("{error}"));

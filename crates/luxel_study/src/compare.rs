@@ -52,15 +52,11 @@ fn linear_errors(reference: &Image, test: &Image) -> Option<(f64, f64)> {
     if reference.encoding() != Encoding::Linear {
         return None;
     }
-    let widened = |image: &Image| -> Vec<[f64; 3]> {
-        image.pixels().iter().map(|p| p.map(f64::from)).collect()
-    };
+    let widened =
+        |image: &Image| -> Vec<[f64; 3]> { image.pixels().iter().map(|p| p.map(f64::from)).collect() };
     let (a, b) = (widened(reference), widened(test));
     let rmse = mean(&a, &b, |a, b| (a - b) * (a - b)).sqrt();
-    Some((
-        rmse,
-        mean(&a, &b, |a, b| (a - b) * (a - b) / (a * a + REL_MSE_FLOOR)),
-    ))
+    Some((rmse, mean(&a, &b, |a, b| (a - b) * (a - b) / (a * a + REL_MSE_FLOOR))))
 }
 
 /// The mean of `error` over all pixels and channels.
@@ -73,36 +69,22 @@ fn mean(a: &[[f64; 3]], b: &[[f64; 3]], error: impl Fn(f64, f64) -> f64) -> f64 
 pub(crate) fn check_pair(a: &Image, b: &Image) -> Result<(), StudyError> {
     let size = |image: &Image| (image.width(), image.height());
     if size(a) != size(b) {
-        return Err(StudyError::Size {
-            a: size(a),
-            b: size(b),
-        });
+        return Err(StudyError::Size { a: size(a), b: size(b) });
     }
     if a.encoding() != b.encoding() {
-        return Err(StudyError::Encoding {
-            a: a.encoding(),
-            b: b.encoding(),
-        });
+        return Err(StudyError::Encoding { a: a.encoding(), b: b.encoding() });
     }
     check_finite("A", a)?;
     check_finite("B", b)
 }
 
 fn check_finite(picture: &'static str, image: &Image) -> Result<(), StudyError> {
-    let found = image
-        .pixels()
-        .iter()
-        .position(|pixel| pixel.iter().any(|channel| !channel.is_finite()));
+    let found = image.pixels().iter().position(|pixel| pixel.iter().any(|channel| !channel.is_finite()));
     match found {
         None => Ok(()),
         Some(index) => {
             let (x, y) = (index as u32 % image.width(), index as u32 / image.width());
-            Err(StudyError::NotFinite {
-                picture,
-                x,
-                y,
-                value: image.pixels()[index],
-            })
+            Err(StudyError::NotFinite { picture, x, y, value: image.pixels()[index] })
         }
     }
 }

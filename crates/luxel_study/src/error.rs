@@ -42,9 +42,7 @@ pub enum StudyError {
         b: (u32, u32),
     },
     /// One picture holds display values and the other linear radiance.
-    #[error(
-        "the pictures differ in kind: A is {a}, B is {b}; compare two PNG files or two EXR files"
-    )]
+    #[error("the pictures differ in kind: A is {a}, B is {b}; compare two PNG files or two EXR files")]
     Encoding {
         /// Encoding of the first picture.
         a: Encoding,

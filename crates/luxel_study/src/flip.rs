@@ -58,36 +58,18 @@ pub fn flip_map(reference: &Image, test: &Image) -> Result<FlipMap, StudyError> 
     check_pair(reference, test)?;
     let width = reference.width() as usize;
     let values = flip_of_display_pixels(width, &reference.display_pixels(), &test.display_pixels());
-    Ok(FlipMap {
-        width: reference.width(),
-        height: reference.height(),
-        values,
-    })
+    Ok(FlipMap { width: reference.width(), height: reference.height(), values })
 }
 
 /// FLIP per pixel of two pictures of display values, rows of `width` pixels.
-pub(crate) fn flip_of_display_pixels(
-    width: usize,
-    reference: &[[f64; 3]],
-    test: &[[f64; 3]],
-) -> Vec<f64> {
+pub(crate) fn flip_of_display_pixels(width: usize, reference: &[[f64; 3]], test: &[[f64; 3]]) -> Vec<f64> {
     let largest = largest_color_difference();
     let a = Perceived::new(width, reference);
     let b = Perceived::new(width, test);
-    let color = a
-        .lab
-        .iter()
-        .zip(&b.lab)
-        .map(|(a, b)| stretch(hyab_distance(*a, *b).powf(COLOR_EXPONENT), largest));
-    let feature = a
-        .features
-        .iter()
-        .zip(&b.features)
-        .map(|(a, b)| feature_difference(*a, *b));
-    color
-        .zip(feature)
-        .map(|(color, feature)| color.powf(1.0 - feature))
-        .collect()
+    let color =
+        a.lab.iter().zip(&b.lab).map(|(a, b)| stretch(hyab_distance(*a, *b).powf(COLOR_EXPONENT), largest));
+    let feature = a.features.iter().zip(&b.features).map(|(a, b)| feature_difference(*a, *b));
+    color.zip(feature).map(|(color, feature)| color.powf(1.0 - feature)).collect()
 }
 
 /// What FLIP keeps of one picture.
@@ -100,14 +82,8 @@ struct Perceived {
 
 impl Perceived {
     fn new(width: usize, display_pixels: &[[f64; 3]]) -> Self {
-        let opponent: Vec<[f64; 3]> = display_pixels
-            .iter()
-            .map(|pixel| opponent_from_srgb(*pixel))
-            .collect();
-        Self {
-            lab: perceived_colors(width, &opponent),
-            features: perceived_features(width, &opponent),
-        }
+        let opponent: Vec<[f64; 3]> = display_pixels.iter().map(|pixel| opponent_from_srgb(*pixel)).collect();
+        Self { lab: perceived_colors(width, &opponent), features: perceived_features(width, &opponent) }
     }
 }
 
@@ -117,10 +93,7 @@ fn perceived_colors(width: usize, opponent: &[[f64; 3]]) -> Vec<[f64; 3]> {
         .iter()
         .enumerate()
         .map(|(channel, lobes)| {
-            filter_channel(
-                &Plane::from_fn(width, opponent, |pixel| pixel[channel]),
-                lobes,
-            )
+            filter_channel(&Plane::from_fn(width, opponent, |pixel| pixel[channel]), lobes)
         })
         .collect();
     (0..opponent.len())
@@ -135,36 +108,21 @@ fn filter_channel(plane: &Plane, lobes: &[kernels::Lobe]) -> Vec<f64> {
     let mut sum = vec![0.0; plane.values.len()];
     for lobe in lobes {
         let filtered = plane.convolve(&lobe.profile, &lobe.profile);
-        sum.iter_mut()
-            .zip(&filtered.values)
-            .for_each(|(sum, value)| *sum += lobe.weight * value);
+        sum.iter_mut().zip(&filtered.values).for_each(|(sum, value)| *sum += lobe.weight * value);
     }
     sum
 }
 
 /// Edges and points in the achromatic channel, scaled to 0..=1 (4.2.1).
 fn perceived_features(width: usize, opponent: &[[f64; 3]]) -> Vec<[f64; 2]> {
-    let FeatureKernels {
-        smooth,
-        edge,
-        point,
-    } = FeatureKernels::new(PIXELS_PER_DEGREE);
+    let FeatureKernels { smooth, edge, point } = FeatureKernels::new(PIXELS_PER_DEGREE);
     let achromatic = Plane::from_fn(width, opponent, |pixel| (pixel[0] + 16.0) / 116.0);
     let strength = |kernel: &[f64]| -> Vec<f64> {
         let across = achromatic.convolve(kernel, &smooth);
         let down = achromatic.convolve(&smooth, kernel);
-        across
-            .values
-            .iter()
-            .zip(&down.values)
-            .map(|(x, y)| x.hypot(*y))
-            .collect()
+        across.values.iter().zip(&down.values).map(|(x, y)| x.hypot(*y)).collect()
     };
-    strength(&edge)
-        .into_iter()
-        .zip(strength(&point))
-        .map(|(edge, point)| [edge, point])
-        .collect()
+    strength(&edge).into_iter().zip(strength(&point)).map(|(edge, point)| [edge, point]).collect()
 }
 
 fn feature_difference(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -174,11 +132,7 @@ fn feature_difference(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 /// The colour difference between the two display primaries that lie furthest apart, pure green and pure blue.
 fn largest_color_difference() -> f64 {
-    hyab_distance(
-        lab_from_linear([0.0, 1.0, 0.0]),
-        lab_from_linear([0.0, 0.0, 1.0]),
-    )
-    .powf(COLOR_EXPONENT)
+    hyab_distance(lab_from_linear([0.0, 1.0, 0.0]), lab_from_linear([0.0, 0.0, 1.0])).powf(COLOR_EXPONENT)
 }
 
 /// Spreads the differences that occur in practice over most of 0..=1 (4.1.3).

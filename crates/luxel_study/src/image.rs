@@ -46,18 +46,9 @@ impl Image {
     ) -> Result<Self, StudyError> {
         let found = pixels.len();
         if found == 0 || found as u64 != u64::from(width) * u64::from(height) {
-            return Err(StudyError::PixelCount {
-                width,
-                height,
-                found,
-            });
+            return Err(StudyError::PixelCount { width, height, found });
         }
-        Ok(Self {
-            width,
-            height,
-            pixels,
-            encoding,
-        })
+        Ok(Self { width, height, pixels, encoding })
     }
 
     /// Width in pixels.
@@ -90,29 +81,18 @@ impl Image {
             Encoding::Srgb => f64::from(channel),
             Encoding::Linear => srgb_from_linear(f64::from(channel).clamp(0.0, 1.0)),
         };
-        self.pixels
-            .iter()
-            .map(|pixel| pixel.map(to_display))
-            .collect()
+        self.pixels.iter().map(|pixel| pixel.map(to_display)).collect()
     }
 }
 
 /// The sRGB transfer curve (IEC 61966-2-1) for a linear value in 0..=1.
 fn srgb_from_linear(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    }
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// The inverse of the sRGB transfer curve.
 pub(crate) fn linear_from_srgb(encoded: f64) -> f64 {
-    if encoded <= 0.040_45 {
-        encoded / 12.92
-    } else {
-        ((encoded + 0.055) / 1.055).powf(2.4)
-    }
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 #[cfg(test)]

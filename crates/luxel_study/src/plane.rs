@@ -12,11 +12,7 @@ pub(crate) struct Plane {
 impl Plane {
     /// A plane made of one number per element of `source`, row by row.
     pub(crate) fn from_fn<T>(width: usize, source: &[T], value: impl Fn(&T) -> f64) -> Self {
-        Self {
-            width,
-            height: source.len() / width,
-            values: source.iter().map(value).collect(),
-        }
+        Self { width, height: source.len() / width, values: source.iter().map(value).collect() }
     }
 
     /// Convolves with `along_x` in each row, then `along_y` in each column; both have an odd length.
@@ -28,11 +24,7 @@ impl Plane {
         let radius = kernel.len() / 2;
         let mut values = vec![0.0; self.values.len()];
         let mut padded = vec![0.0; self.width + 2 * radius];
-        for (row, out) in self
-            .values
-            .chunks_exact(self.width)
-            .zip(values.chunks_exact_mut(self.width))
-        {
+        for (row, out) in self.values.chunks_exact(self.width).zip(values.chunks_exact_mut(self.width)) {
             padded[..radius].fill(row[0]);
             padded[radius..radius + self.width].copy_from_slice(row);
             padded[radius + self.width..].fill(row[self.width - 1]);
@@ -69,9 +61,7 @@ mod tests {
     #[test]
     fn equals_the_definition() {
         let (width, height) = (7, 5);
-        let source: Vec<f64> = (0..width * height)
-            .map(|i| f64::from((i * 37 % 11) as u32))
-            .collect();
+        let source: Vec<f64> = (0..width * height).map(|i| f64::from((i * 37 % 11) as u32)).collect();
         let plane = Plane::from_fn(width, &source, |v| *v);
         let (along_x, along_y) = ([1.0, 2.0, -3.0, 5.0, 0.5], [2.0, -1.0, 4.0]);
         let got = plane.convolve(&along_x, &along_y);

@@ -22,14 +22,8 @@ const MAX_PIXELS: usize = 1 << 28;
 /// # Errors
 /// [`StudyError::Io`] when the file cannot be read, [`StudyError::Format`] when it is not a sound PNG or EXR picture.
 pub fn read_image(path: &Path) -> Result<Image, StudyError> {
-    let io_error = |source| StudyError::Io {
-        path: path.to_owned(),
-        source,
-    };
-    let format_error = |reason| StudyError::Format {
-        path: path.to_owned(),
-        reason,
-    };
+    let io_error = |source| StudyError::Io { path: path.to_owned(), source };
+    let format_error = |reason| StudyError::Format { path: path.to_owned(), reason };
     let mut file = BufReader::new(std::fs::File::open(path).map_err(io_error)?);
     let head = file.fill_buf().map_err(io_error)?;
     if head.starts_with(PNG_MAGIC) {
@@ -53,24 +47,15 @@ fn read_png(file: impl BufRead + Seek) -> Result<Image, String> {
             | DynamicImage::ImageRgba16(_)
     );
     let pixels = if is_16_bit {
-        decoded
-            .into_rgb16()
-            .pixels()
-            .map(|p| p.0.map(|v| f32::from(v) / f32::from(u16::MAX)))
-            .collect()
+        decoded.into_rgb16().pixels().map(|p| p.0.map(|v| f32::from(v) / f32::from(u16::MAX))).collect()
     } else {
-        decoded
-            .into_rgb8()
-            .pixels()
-            .map(|p| p.0.map(|v| f32::from(v) / f32::from(u8::MAX)))
-            .collect()
+        decoded.into_rgb8().pixels().map(|p| p.0.map(|v| f32::from(v) / f32::from(u8::MAX))).collect()
     };
     Image::new(width, height, pixels, Encoding::Srgb).map_err(|error| error.to_string())
 }
 
 fn read_exr(mut file: impl BufRead + Seek + Send) -> Result<Image, String> {
-    let unsound =
-        |error: exr::error::Error| format!("not an EXR file with channels R, G and B: {error}");
+    let unsound = |error: exr::error::Error| format!("not an EXR file with channels R, G and B: {error}");
     check_exr_header(&MetaData::read_from_buffered(&mut file, false).map_err(unsound)?)?;
     file.rewind().map_err(|error| error.to_string())?;
     let decoded = exr::image::read::read()
@@ -92,13 +77,8 @@ fn read_exr(mut file: impl BufRead + Seek + Send) -> Result<Image, String> {
         .map_err(unsound)?;
     let (size, pixels) = decoded.layer_data.channel_data.pixels;
     let side = |pixels: usize| u32::try_from(pixels).map_err(|error| error.to_string());
-    Image::new(
-        side(size.width())?,
-        side(size.height())?,
-        pixels,
-        Encoding::Linear,
-    )
-    .map_err(|error| error.to_string())
+    Image::new(side(size.width())?, side(size.height())?, pixels, Encoding::Linear)
+        .map_err(|error| error.to_string())
 }
 
 /// Refuses what the decoder would answer with a panic or an allocation that a broken header made up.
@@ -106,17 +86,8 @@ fn check_exr_header(meta: &MetaData) -> Result<(), String> {
     if meta.requirements.has_deep_data || meta.headers.iter().any(|header| header.deep) {
         return Err("an EXR file with deep data cannot be compared".to_owned());
     }
-    match meta
-        .headers
-        .iter()
-        .map(|header| header.layer_size)
-        .find(|size| size.area() > MAX_PIXELS)
-    {
-        Some(size) => Err(format!(
-            "{}x{} pixels are more than can be compared",
-            size.width(),
-            size.height()
-        )),
+    match meta.headers.iter().map(|header| header.layer_size).find(|size| size.area() > MAX_PIXELS) {
+        Some(size) => Err(format!("{}x{} pixels are more than can be compared", size.width(), size.height())),
         None => Ok(()),
     }
 }

@@ -19,22 +19,15 @@ pub(crate) fn ssim(width: usize, a: &[[f64; 3]], b: &[[f64; 3]]) -> Option<f64> 
     if width <= 2 * RADIUS || height <= 2 * RADIUS {
         return None;
     }
-    let sum: f64 = (0..3)
-        .map(|channel| channel_ssim(width, a, b, channel))
-        .sum();
+    let sum: f64 = (0..3).map(|channel| channel_ssim(width, a, b, channel)).sum();
     Some(sum / 3.0)
 }
 
 fn channel_ssim(width: usize, a: &[[f64; 3]], b: &[[f64; 3]], channel: usize) -> f64 {
     let window = gaussian_window();
-    let pairs: Vec<(f64, f64)> = a
-        .iter()
-        .zip(b)
-        .map(|(a, b)| (a[channel], b[channel]))
-        .collect();
-    let windowed = |value: fn(&(f64, f64)) -> f64| {
-        Plane::from_fn(width, &pairs, value).convolve(&window, &window)
-    };
+    let pairs: Vec<(f64, f64)> = a.iter().zip(b).map(|(a, b)| (a[channel], b[channel])).collect();
+    let windowed =
+        |value: fn(&(f64, f64)) -> f64| Plane::from_fn(width, &pairs, value).convolve(&window, &window);
     let mean_a = windowed(|p| p.0);
     let mean_b = windowed(|p| p.1);
     let square_a = windowed(|p| p.0 * p.0);

@@ -14,9 +14,7 @@ fn value(x: u32, y: u32, c: u32) -> f32 {
 }
 
 fn picture(encoding: Encoding, value: impl Fn(u32, u32, u32) -> f32) -> Image {
-    let pixels = (0..WIDTH * HEIGHT)
-        .map(|i| [0, 1, 2].map(|c| value(i % WIDTH, i / WIDTH, c)))
-        .collect();
+    let pixels = (0..WIDTH * HEIGHT).map(|i| [0, 1, 2].map(|c| value(i % WIDTH, i / WIDTH, c))).collect();
     Image::new(WIDTH, HEIGHT, pixels, encoding).unwrap()
 }
 
@@ -27,23 +25,11 @@ fn both_encodings() -> [Encoding; 2] {
 /// Every metric of a pair that the pictures are wrong must say so by more than its rounding.
 fn assert_seen(what: &str, got: &Comparison) {
     assert!(got.rmse > 1e-4, "{what}: {got:?}");
-    assert!(
-        got.psnr_db.is_some_and(|psnr| psnr < 80.0),
-        "{what}: {got:?}"
-    );
-    assert!(
-        got.ssim.is_some_and(|ssim| ssim < 0.999_9),
-        "{what}: {got:?}"
-    );
+    assert!(got.psnr_db.is_some_and(|psnr| psnr < 80.0), "{what}: {got:?}");
+    assert!(got.ssim.is_some_and(|ssim| ssim < 0.999_9), "{what}: {got:?}");
     assert!(got.flip > 1e-4, "{what}: {got:?}");
-    assert!(
-        got.rmse_linear.is_none_or(|rmse| rmse > 1e-4),
-        "{what}: {got:?}"
-    );
-    assert!(
-        got.rel_mse.is_none_or(|error| error > 1e-6),
-        "{what}: {got:?}"
-    );
+    assert!(got.rmse_linear.is_none_or(|rmse| rmse > 1e-4), "{what}: {got:?}");
+    assert!(got.rel_mse.is_none_or(|error| error > 1e-6), "{what}: {got:?}");
 }
 
 #[test]
@@ -52,19 +38,10 @@ fn a_picture_equals_itself() {
         let a = picture(encoding, value);
         let got = compare(&a, &a).unwrap();
         let linear = (encoding == Encoding::Linear).then_some(0.0);
-        assert_eq!(
-            (got.rmse, got.rmse_linear, got.rel_mse, got.psnr_db),
-            (0.0, linear, linear, None)
-        );
+        assert_eq!((got.rmse, got.rmse_linear, got.rel_mse, got.psnr_db), (0.0, linear, linear, None));
         assert_eq!(got.flip, 0.0);
         assert!((got.ssim.unwrap() - 1.0).abs() < 1e-12);
-        assert!(
-            flip_map(&a, &a)
-                .unwrap()
-                .values
-                .iter()
-                .all(|difference| *difference == 0.0)
-        );
+        assert!(flip_map(&a, &a).unwrap().values.iter().all(|difference| *difference == 0.0));
     }
 }
 
@@ -73,33 +50,17 @@ fn a_perturbed_shifted_or_swapped_picture_is_seen_by_every_metric() {
     for encoding in both_encodings() {
         let a = picture(encoding, value);
         let perturbed = |x, y, c| {
-            if (x, y) == (20, 15) {
-                1.0 - value(x, y, c)
-            } else {
-                value(x, y, c)
-            }
+            if (x, y) == (20, 15) { 1.0 - value(x, y, c) } else { value(x, y, c) }
         };
         let darker = |x, y, c| 0.97 * value(x, y, c);
         let shifted = |x: u32, y, c| value(x.saturating_sub(1), y, c);
         let swapped = |x, y, c| value(x, y, 2 - c);
         let mirrored = |x, y, c| value(WIDTH - 1 - x, y, c);
-        assert_seen(
-            "one pixel",
-            &compare(&a, &picture(encoding, perturbed)).unwrap(),
-        );
+        assert_seen("one pixel", &compare(&a, &picture(encoding, perturbed)).unwrap());
         assert_seen("darker", &compare(&a, &picture(encoding, darker)).unwrap());
-        assert_seen(
-            "shifted",
-            &compare(&a, &picture(encoding, shifted)).unwrap(),
-        );
-        assert_seen(
-            "swapped",
-            &compare(&a, &picture(encoding, swapped)).unwrap(),
-        );
-        assert_seen(
-            "mirrored",
-            &compare(&a, &picture(encoding, mirrored)).unwrap(),
-        );
+        assert_seen("shifted", &compare(&a, &picture(encoding, shifted)).unwrap());
+        assert_seen("swapped", &compare(&a, &picture(encoding, swapped)).unwrap());
+        assert_seen("mirrored", &compare(&a, &picture(encoding, mirrored)).unwrap());
     }
 }
 
@@ -107,33 +68,13 @@ fn a_perturbed_shifted_or_swapped_picture_is_seen_by_every_metric() {
 fn a_pixel_that_is_not_finite_is_named() {
     let a = picture(Encoding::Linear, value);
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        let b = picture(Encoding::Linear, |x, y, c| {
-            if (x, y, c) == (7, 5, 1) {
-                bad
-            } else {
-                value(x, y, c)
-            }
-        });
-        for (result, name) in [
-            (compare(&a, &b), "B"),
-            (compare(&b, &a), "A"),
-            (compare(&b, &b), "A"),
-        ] {
+        let b =
+            picture(Encoding::Linear, |x, y, c| if (x, y, c) == (7, 5, 1) { bad } else { value(x, y, c) });
+        for (result, name) in [(compare(&a, &b), "B"), (compare(&b, &a), "A"), (compare(&b, &b), "A")] {
             let message = result.unwrap_err().to_string();
-            assert!(
-                message.starts_with(&format!("picture {name}: pixel (7, 5) is not finite")),
-                "{message}"
-            );
+            assert!(message.starts_with(&format!("picture {name}: pixel (7, 5) is not finite")), "{message}");
         }
-        assert!(matches!(
-            flip_map(&a, &b),
-            Err(StudyError::NotFinite {
-                picture: "B",
-                x: 7,
-                y: 5,
-                ..
-            })
-        ));
+        assert!(matches!(flip_map(&a, &b), Err(StudyError::NotFinite { picture: "B", x: 7, y: 5, .. })));
     }
 }
 
@@ -141,16 +82,10 @@ fn a_pixel_that_is_not_finite_is_named() {
 fn pictures_of_another_size_or_kind_are_refused() {
     let a = picture(Encoding::Srgb, value);
     let linear = picture(Encoding::Linear, value);
-    assert!(matches!(
-        compare(&a, &linear),
-        Err(StudyError::Encoding { .. })
-    ));
+    assert!(matches!(compare(&a, &linear), Err(StudyError::Encoding { .. })));
     let turned = Image::new(HEIGHT, WIDTH, a.pixels().to_vec(), Encoding::Srgb).unwrap();
     let message = compare(&a, &turned).unwrap_err().to_string();
-    assert_eq!(
-        message,
-        "the pictures differ in size: A is 40x30, B is 30x40"
-    );
+    assert_eq!(message, "the pictures differ in size: A is 40x30, B is 30x40");
 }
 
 /// FLIP of black against white is 1 by construction; the least visible difference is near 0.

@@ -28,10 +28,7 @@ fn png_of_8_and_16_bits_grey_and_alpha() {
     let folder = folder();
     let rgb8 = ImageBuffer::from_fn(4, 3, |x, y| Rgb([x as u8 * 60, y as u8 * 100, 255]));
     let image = read_image(&save(folder.path(), "rgb8.png", rgb8)).unwrap();
-    assert_eq!(
-        (image.width(), image.height(), image.encoding()),
-        (4, 3, Encoding::Srgb)
-    );
+    assert_eq!((image.width(), image.height(), image.encoding()), (4, 3, Encoding::Srgb));
     assert_eq!(image.pixels()[4 + 2], [120.0 / 255.0, 100.0 / 255.0, 1.0]);
 
     let rgba16 = ImageBuffer::from_fn(4, 3, |x, _| Rgba([x as u16 * 257, 65535, 1, 0]));
@@ -48,13 +45,8 @@ fn exr_keeps_every_bit() {
     let folder = folder();
     let value = |x: usize, y: usize| (x as f32 * 1e6, -(y as f32) / 3.0, 1e-30);
     let image = read_image(&write_exr(folder.path(), value)).unwrap();
-    assert_eq!(
-        (image.width(), image.height(), image.encoding()),
-        (5, 3, Encoding::Linear)
-    );
-    let want: Vec<[f32; 3]> = (0..15)
-        .map(|i| <[f32; 3]>::from(value(i % 5, i / 5)))
-        .collect();
+    assert_eq!((image.width(), image.height(), image.encoding()), (5, 3, Encoding::Linear));
+    let want: Vec<[f32; 3]> = (0..15).map(|i| <[f32; 3]>::from(value(i % 5, i / 5))).collect();
     assert_eq!(image.pixels(), want);
 }
 
@@ -65,10 +57,7 @@ fn a_nan_in_a_file_is_found_by_the_comparison() {
         (if (x, y) == (4, 2) { f32::NAN } else { 0.0 }, 0.0, 0.0)
     }));
     let image = image.unwrap();
-    assert!(matches!(
-        compare(&image, &image),
-        Err(StudyError::NotFinite { x: 4, y: 2, .. })
-    ));
+    assert!(matches!(compare(&image, &image), Err(StudyError::NotFinite { x: 4, y: 2, .. })));
 }
 
 /// Each bad file gives one line that starts with its name; nothing panics.
@@ -76,11 +65,7 @@ fn a_nan_in_a_file_is_found_by_the_comparison() {
 fn bad_files_are_named() {
     let folder = folder();
     let path = |name: &str| folder.path().join(name);
-    let png = save(
-        folder.path(),
-        "whole.png",
-        ImageBuffer::from_pixel(64, 64, Rgb([1_u8, 2, 3])),
-    );
+    let png = save(folder.path(), "whole.png", ImageBuffer::from_pixel(64, 64, Rgb([1_u8, 2, 3])));
     let exr = write_exr(folder.path(), |_, _| (1.0, 2.0, 3.0));
     let bytes = |path: &Path| std::fs::read(path).unwrap();
     std::fs::write(path("cut.png"), &bytes(&png)[..60]).unwrap();
@@ -91,21 +76,9 @@ fn bad_files_are_named() {
     let mut deep = bytes(&exr);
     deep[5] |= 0x08;
     std::fs::write(path("deep.exr"), deep).unwrap();
-    for name in [
-        "cut.png",
-        "cut.exr",
-        "head.exr",
-        "text.png",
-        "empty.exr",
-        "deep.exr",
-        "missing.png",
-        ".",
-    ] {
+    for name in ["cut.png", "cut.exr", "head.exr", "text.png", "empty.exr", "deep.exr", "missing.png", "."] {
         let message = read_image(&path(name)).unwrap_err().to_string();
-        assert!(
-            message.starts_with(&path(name).display().to_string()),
-            "{message}"
-        );
+        assert!(message.starts_with(&path(name).display().to_string()), "{message}");
         assert_eq!(message.lines().count(), 1, "{message}");
     }
 }
@@ -117,13 +90,7 @@ fn a_made_up_size_is_refused() {
     let path = write_exr(folder.path(), |_, _| (1.0, 2.0, 3.0));
     let mut bytes = std::fs::read(&path).unwrap();
     let marker = b"dataWindow\0box2i\0";
-    let at = bytes
-        .windows(marker.len())
-        .position(|window| window == marker)
-        .unwrap()
-        + marker.len()
-        + 4
-        + 8;
+    let at = bytes.windows(marker.len()).position(|window| window == marker).unwrap() + marker.len() + 4 + 8;
     bytes[at..at + 8].copy_from_slice(&[0xff, 0xff, 0xff, 0x3f, 0xff, 0xff, 0xff, 0x3f]);
     std::fs::write(&path, bytes).unwrap();
     assert!(matches!(read_image(&path), Err(StudyError::Format { .. })));

@@ -25,22 +25,13 @@ struct Oracle {
     rel_mse: Option<f64>,
 }
 
-fn image(
-    width: u32,
-    height: u32,
-    encoding: Encoding,
-    value: impl Fn(u32, u32, u32) -> f32,
-) -> Image {
-    let pixels = (0..width * height)
-        .map(|i| [0, 1, 2].map(|c| value(i % width, i / width, c)))
-        .collect();
+fn image(width: u32, height: u32, encoding: Encoding, value: impl Fn(u32, u32, u32) -> f32) -> Image {
+    let pixels = (0..width * height).map(|i| [0, 1, 2].map(|c| value(i % width, i / width, c))).collect();
     Image::new(width, height, pixels, encoding).unwrap()
 }
 
 fn display(width: u32, height: u32, byte: impl Fn(u32, u32, u32) -> u32) -> Image {
-    image(width, height, Encoding::Srgb, |x, y, c| {
-        byte(x, y, c) as f32 / 255.0
-    })
+    image(width, height, Encoding::Srgb, |x, y, c| byte(x, y, c) as f32 / 255.0)
 }
 
 fn scramble(x: u32, y: u32, c: u32) -> u32 {
@@ -54,55 +45,28 @@ fn check(a: &Image, b: &Image, oracle: &Oracle) {
     let map = flip_map(a, b).unwrap();
     let close = |got: f64, want: f64| (got - want).abs() <= METRIC_TOLERANCE * want.abs();
     assert!(close(got.rmse, oracle.rmse), "rmse {}", got.rmse);
-    assert!(
-        close(got.psnr_db.unwrap(), oracle.psnr_db),
-        "psnr {:?}",
-        got.psnr_db
-    );
+    assert!(close(got.psnr_db.unwrap(), oracle.psnr_db), "psnr {:?}", got.psnr_db);
     assert!(close(got.ssim.unwrap(), oracle.ssim), "ssim {:?}", got.ssim);
-    for (got, want) in [
-        (got.rmse_linear, oracle.rmse_linear),
-        (got.rel_mse, oracle.rel_mse),
-    ] {
+    for (got, want) in [(got.rmse_linear, oracle.rmse_linear), (got.rel_mse, oracle.rel_mse)] {
         assert_eq!(got.is_some(), want.is_some());
-        assert!(
-            got.zip(want).is_none_or(|(got, want)| close(got, want)),
-            "{got:?} {want:?}"
-        );
+        assert!(got.zip(want).is_none_or(|(got, want)| close(got, want)), "{got:?} {want:?}");
     }
     let largest = map.values.iter().copied().fold(0.0, f64::max);
     let at_20_20 = map.values[20 * map.width as usize + 20];
     for (name, got, want, tolerance) in [
         ("mean", got.flip, oracle.flip, FLIP_MEAN_TOLERANCE),
-        (
-            "mean of the map",
-            map.mean(),
-            oracle.flip,
-            FLIP_MEAN_TOLERANCE,
-        ),
+        ("mean of the map", map.mean(), oracle.flip, FLIP_MEAN_TOLERANCE),
         ("largest", largest, oracle.flip_max, FLIP_PIXEL_TOLERANCE),
-        (
-            "pixel (20, 20)",
-            at_20_20,
-            oracle.flip_at_20_20,
-            FLIP_PIXEL_TOLERANCE,
-        ),
+        ("pixel (20, 20)", at_20_20, oracle.flip_at_20_20, FLIP_PIXEL_TOLERANCE),
     ] {
-        assert!(
-            (got - want).abs() <= tolerance,
-            "flip {name}: {got}, oracle {want}"
-        );
+        assert!((got - want).abs() <= tolerance, "flip {name}: {got}, oracle {want}");
     }
 }
 
 #[test]
 fn noise() {
     let a = |x, y, c| (x * 3 + y * 2 + c * 40) % 256;
-    let b = |x, y, c| {
-        (a(x, y, c) + scramble(x, y, c) % 31)
-            .saturating_sub(15)
-            .min(255)
-    };
+    let b = |x, y, c| (a(x, y, c) + scramble(x, y, c) % 31).saturating_sub(15).min(255);
     let oracle = Oracle {
         rmse: 0.034443252,
         psnr_db: 29.257917097,
@@ -121,11 +85,7 @@ fn shifted_disc() {
     let disc = |cx: u32, cy: u32| {
         display(80, 60, move |x, y, c| {
             let inside = x.abs_diff(cx).pow(2) + y.abs_diff(cy).pow(2) <= 400;
-            if inside {
-                [220, 60, 30][c as usize]
-            } else {
-                [30, 40, 200][c as usize]
-            }
+            if inside { [220, 60, 30][c as usize] } else { [30, 40, 200][c as usize] }
         })
     };
     let oracle = Oracle {
@@ -154,21 +114,13 @@ fn swapped_channels() {
         rmse_linear: None,
         rel_mse: None,
     };
-    check(
-        &display(33, 47, a),
-        &display(33, 47, |x, y, c| a(x, y, 2 - c)),
-        &oracle,
-    );
+    check(&display(33, 47, a), &display(33, 47, |x, y, c| a(x, y, 2 - c)), &oracle);
 }
 
 #[test]
 fn missing_line() {
     let a = |x: u32, y: u32, _: u32| {
-        if x.is_multiple_of(13) || y.is_multiple_of(17) {
-            255
-        } else {
-            64
-        }
+        if x.is_multiple_of(13) || y.is_multiple_of(17) { 255 } else { 64 }
     };
     let b = |x, y, c| if x == 26 { 64 } else { a(x, y, c) };
     let oracle = Oracle {

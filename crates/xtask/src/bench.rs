@@ -1,10 +1,11 @@
 //! `cargo xtask bench`: runs the benches and keeps a compact table of them, with machine, date and commit.
 //!
 //! Criterion leaves `benchmark.json` (names, work per iteration) and `estimates.json` (times in nanoseconds) in a folder
-//! `new` for each benchmark. What those say goes to `benches/results/DATE-MACHINE.json`, and the same as a table to
-//! the `.md` beside it.
+//! `new` for each benchmark; the bench `compile` leaves `tmp/compile.json`. What those say goes to
+//! `benches/results/DATE-MACHINE.json`, and the same as tables to the `.md` beside it.
 
-use std::fmt::Write as _;
+mod table;
+
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::SystemTime;
@@ -20,8 +21,13 @@ use crate::machine;
 struct Record {
     date: String,
     machine: String,
+    /// Processes that wanted a core when the run began: above the number of cores, times are noisy.
+    load: String,
+    rustc: String,
     commit: String,
     benchmarks: Vec<Benchmark>,
+    /// What compiling the kernels cost, as the bench left it.
+    compile: Option<Value>,
 }
 
 /// One benchmark: the median time of an iteration with its 95 % confidence interval.
@@ -38,21 +44,21 @@ struct Benchmark {
 /// Runs `cargo bench` with `arguments` for criterion, then writes the record of what has been measured.
 pub(crate) fn run(arguments: &[&str]) -> Result<()> {
     let started = SystemTime::now();
+    let load = load();
     let words = [&["bench", "--bench", "*", "--"], arguments].concat();
     machine::run(machine::cargo(&words)?.stdin(Stdio::null()))?;
     let mut benchmarks = Vec::new();
-    collect(
-        &machine::target().join("criterion"),
-        started,
-        &mut benchmarks,
-    )?;
+    collect(&machine::target().join("criterion"), started, &mut benchmarks)?;
     ensure!(!benchmarks.is_empty(), "no benchmark was measured");
     benchmarks.sort_by(|a, b| a.name.cmp(&b.name));
     write(&Record {
         date: date()?,
         machine: describe_machine(),
-        commit: commit(),
+        load,
+        rustc: output_or_unknown("rustc", &["--version"]),
+        commit: output_or_unknown("git", &["describe", "--always", "--dirty"]),
         benchmarks,
+        compile: compile_times(started)?,
     })
 }
 
@@ -61,16 +67,11 @@ fn collect(folder: &Path, started: SystemTime, found: &mut Vec<Benchmark>) -> Re
     let estimates = folder.join("estimates.json");
     if folder.ends_with("new") && estimates.is_file() {
         if estimates.metadata()?.modified()? >= started {
-            found.push(benchmark(
-                &read_json(&folder.join("benchmark.json"))?,
-                &read_json(&estimates)?,
-            )?);
+            found.push(benchmark(&read_json(&folder.join("benchmark.json"))?, &read_json(&estimates)?)?);
         }
         return Ok(());
     }
-    for entry in
-        std::fs::read_dir(folder).with_context(|| format!("cannot list {}", folder.display()))?
-    {
+    for entry in std::fs::read_dir(folder).with_context(|| format!("cannot list {}", folder.display()))? {
         let path = entry?.path();
         if path.is_dir() {
             collect(&path, started, found)?;
@@ -79,17 +80,20 @@ fn collect(folder: &Path, started: SystemTime, found: &mut Vec<Benchmark>) -> Re
     Ok(())
 }
 
+/// What the bench `compile` wrote after `started`; nothing if it did not run or found no adapter.
+fn compile_times(started: SystemTime) -> Result<Option<Value>> {
+    let path = machine::target().join("tmp/compile.json");
+    let written = path.metadata().and_then(|metadata| metadata.modified());
+    if written.is_ok_and(|written| written >= started) { read_json(&path).map(Some) } else { Ok(None) }
+}
+
 fn read_json(path: &Path) -> Result<Value> {
-    let text =
-        std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
     serde_json::from_str(&text).with_context(|| format!("{} is not JSON", path.display()))
 }
 
 fn benchmark(about: &Value, estimates: &Value) -> Result<Benchmark> {
-    let name = about["full_id"]
-        .as_str()
-        .context("benchmark.json has no full_id")?
-        .to_owned();
+    let name = about["full_id"].as_str().context("benchmark.json has no full_id")?.to_owned();
     let time = |pointer: &str| {
         let value = estimates.pointer(pointer).and_then(Value::as_f64);
         value.with_context(|| format!("{name}: estimates.json has no {pointer}"))
@@ -97,22 +101,14 @@ fn benchmark(about: &Value, estimates: &Value) -> Result<Benchmark> {
     let median_ns = time("/median/point_estimate")?;
     let low_ns = time("/median/confidence_interval/lower_bound")?;
     let high_ns = time("/median/confidence_interval/upper_bound")?;
-    let elements_per_sec = about["throughput"]["Elements"]
-        .as_f64()
-        .map(|elements| elements / (median_ns * 1e-9));
-    Ok(Benchmark {
-        name,
-        median_ns,
-        low_ns,
-        high_ns,
-        elements_per_sec,
-    })
+    let elements_per_sec =
+        about["throughput"]["Elements"].as_f64().map(|elements| elements / (median_ns * 1e-9));
+    Ok(Benchmark { name, median_ns, low_ns, high_ns, elements_per_sec })
 }
 
 fn write(record: &Record) -> Result<()> {
     let folder = machine::root().join("benches/results");
-    std::fs::create_dir_all(&folder)
-        .with_context(|| format!("cannot make {}", folder.display()))?;
+    std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let stem = folder.join(format!("{}-{}", record.date, file_name(&record.machine)));
     let save = |extension: &str, text: String| -> Result<()> {
         let path = PathBuf::from(format!("{}.{extension}", stem.display()));
@@ -121,47 +117,7 @@ fn write(record: &Record) -> Result<()> {
         Ok(())
     };
     save("json", serde_json::to_string_pretty(record)? + "\n")?;
-    save("md", table(record))
-}
-
-fn table(record: &Record) -> String {
-    let mut text = format!(
-        "# Benches, {}\n\n{}, commit {}\n\n",
-        record.date, record.machine, record.commit
-    );
-    text.push_str(
-        "| benchmark | median | 95 % interval | millions per second |\n|---|---:|---:|---:|\n",
-    );
-    for row in &record.benchmarks {
-        let rate = row
-            .elements_per_sec
-            .map_or_else(String::new, |rate| format!("{:.3}", rate * 1e-6));
-        let (median, low, high) = (time(row.median_ns), time(row.low_ns), time(row.high_ns));
-        _ = writeln!(
-            text,
-            "| {} | {median} | {low} – {high} | {rate} |",
-            row.name
-        );
-    }
-    text
-}
-
-/// A time with the unit that suits it, four digits.
-fn time(nanoseconds: f64) -> String {
-    let units = [(1e9, "s"), (1e6, "ms"), (1e3, "µs")];
-    let (scale, unit) = units
-        .into_iter()
-        .find(|(scale, _)| nanoseconds >= *scale)
-        .unwrap_or((1.0, "ns"));
-    let value = nanoseconds / scale;
-    let digits = if value < 10.0 {
-        3
-    } else if value < 100.0 {
-        2
-    } else {
-        1
-    };
-    format!("{value:.digits$} {unit}")
+    save("md", table::markdown(record))
 }
 
 fn date() -> Result<String> {
@@ -171,28 +127,26 @@ fn date() -> Result<String> {
 /// Processor and number of cores.
 fn describe_machine() -> String {
     let about = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = about
-        .lines()
-        .find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    let model = about.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
     let model = model.map_or("unknown processor", |(_, model)| model.trim());
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     format!("{model}, {cores} cores")
 }
 
-fn commit() -> String {
-    machine::output_of("git", &["describe", "--always", "--dirty"])
-        .unwrap_or_else(|| "unknown".to_owned())
+/// The load average of the last minute.
+fn load() -> String {
+    let about = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    about.split_whitespace().next().unwrap_or("unknown").to_owned()
+}
+
+fn output_or_unknown(program: &str, arguments: &[&str]) -> String {
+    machine::output_of(program, arguments).unwrap_or_else(|| "unknown".to_owned())
 }
 
 /// Lower-case words joined by `-`.
 fn file_name(text: &str) -> String {
-    let words = text
-        .split(|c: char| !c.is_ascii_alphanumeric())
-        .filter(|word| !word.is_empty());
-    words
-        .map(str::to_ascii_lowercase)
-        .collect::<Vec<_>>()
-        .join("-")
+    let words = text.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    words.map(str::to_ascii_lowercase).collect::<Vec<_>>().join("-")
 }
 
 #[cfg(test)]
@@ -220,35 +174,16 @@ mod tests {
         leave_measurement(folder.path(), "bvh/build");
         let mut found = Vec::new();
         collect(folder.path(), before, &mut found).unwrap();
-        assert_eq!(
-            (found.len(), found[0].name.as_str(), found[0].median_ns),
-            (1, "bvh/build", 2000.0)
-        );
-        assert!(
-            found[0]
-                .elements_per_sec
-                .is_some_and(|rate| (rate - 5e8).abs() < 1.0)
-        );
+        assert_eq!((found.len(), found[0].name.as_str(), found[0].median_ns), (1, "bvh/build", 2000.0));
+        assert!(found[0].elements_per_sec.is_some_and(|rate| (rate - 5e8).abs() < 1.0));
 
         found.clear();
-        collect(
-            folder.path(),
-            SystemTime::now() + Duration::from_secs(60),
-            &mut found,
-        )
-        .unwrap();
+        collect(folder.path(), SystemTime::now() + Duration::from_secs(60), &mut found).unwrap();
         assert_eq!(found, []);
     }
 
     #[test]
-    fn names_and_times_are_readable() {
-        assert_eq!(
-            file_name("AMD EPYC(tm) 7B13, 2 cores"),
-            "amd-epyc-tm-7b13-2-cores"
-        );
-        assert_eq!(
-            [time(12.34), time(4_567.0), time(2.5e6), time(3e9)],
-            ["12.34 ns", "4.567 µs", "2.500 ms", "3.000 s"]
-        );
+    fn file_names_are_plain() {
+        assert_eq!(file_name("AMD EPYC(tm) 7B13, 2 cores"), "amd-epyc-tm-7b13-2-cores");
     }
 }

@@ -16,20 +16,9 @@ const STEPS: [Step; 8] = [
     ("machine", vulkan::ensure),
     ("format", || cargo(&["fmt", "--all", "--check"])),
     ("generated files", generate::check),
-    ("clippy", || {
-        cargo(&[
-            "clippy",
-            "--workspace",
-            "--all-targets",
-            "--",
-            "-D",
-            "warnings",
-        ])
-    }),
+    ("clippy", || cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])),
     ("docs", docs),
-    ("house rules", || {
-        cargo(&["test", "--package", "luxel", "--test", "house_rules"])
-    }),
+    ("house rules", || cargo(&["test", "--package", "luxel", "--test", "house_rules"])),
     ("tests", || cargo(&["xtask", "test"])),
     ("examples", examples),
 ];
@@ -65,11 +54,7 @@ fn cargo(arguments: &[&str]) -> Result<()> {
 
 fn docs() -> Result<()> {
     let mut command = machine::cargo(&["doc", "--workspace", "--no-deps"])?;
-    machine::run(
-        command
-            .env("RUSTDOCFLAGS", "-Dwarnings")
-            .stdin(Stdio::null()),
-    )
+    machine::run(command.env("RUSTDOCFLAGS", "-Dwarnings").stdin(Stdio::null()))
 }
 
 /// Every example runs headless at small size and leaves at least one file.
@@ -81,38 +66,19 @@ fn examples() -> Result<()> {
         }
         std::fs::create_dir_all(&out)?;
         let started = Instant::now();
-        let mut command = machine::cargo(&[
-            "run",
-            "--quiet",
-            "--example",
-            &name,
-            "--",
-            "--quick",
-            "--out",
-        ])?;
-        machine::run(command.arg(&out).stdin(Stdio::null()))
-            .with_context(|| format!("example {name}"))?;
+        let mut command = machine::cargo(&["run", "--quiet", "--example", &name, "--", "--quick", "--out"])?;
+        machine::run(command.arg(&out).stdin(Stdio::null())).with_context(|| format!("example {name}"))?;
         let written = std::fs::read_dir(&out)?.count();
-        ensure!(
-            written > 0,
-            "example {name} wrote nothing to {}",
-            out.display()
-        );
-        println!(
-            "example {name}: {written} files, {:.1} s",
-            started.elapsed().as_secs_f64()
-        );
+        ensure!(written > 0, "example {name} wrote nothing to {}", out.display());
+        println!("example {name}: {written} files, {:.1} s", started.elapsed().as_secs_f64());
     }
     Ok(())
 }
 
 /// The names of the examples in `folder`, sorted.
 fn example_names(folder: &Path) -> Result<Vec<String>> {
-    let entries =
-        std::fs::read_dir(folder).with_context(|| format!("cannot list {}", folder.display()))?;
-    let paths = entries
-        .map(|entry| entry.map(|entry| entry.path()))
-        .collect::<Result<Vec<_>, _>>()?;
+    let entries = std::fs::read_dir(folder).with_context(|| format!("cannot list {}", folder.display()))?;
+    let paths = entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>()?;
     let is_example = |path: &&std::path::PathBuf| {
         path.extension() == Some(OsStr::new("rs")) || path.join("main.rs").is_file()
     };

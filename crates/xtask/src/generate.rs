@@ -26,13 +26,10 @@ pub(crate) fn write() -> Result<()> {
 /// Fails if the committed module is not what the Rust records say.
 pub(crate) fn check() -> Result<()> {
     let path = path();
-    let committed = std::fs::read_to_string(&path)
-        .with_context(|| format!("cannot read {}", path.display()))?;
+    let committed =
+        std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
     if committed != luxel_flat::wesl::shared_module() {
-        bail!(
-            "{} is out of date: run `cargo xtask generate` and commit it",
-            path.display()
-        );
+        bail!("{} is out of date: run `cargo xtask generate` and commit it", path.display());
     }
     Ok(())
 }

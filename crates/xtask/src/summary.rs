@@ -21,19 +21,13 @@ impl Summary {
         let line = line.trim();
         if let Some(counts) = line.strip_prefix("test result: ") {
             let count = |what: &str| {
-                counts
-                    .split([';', '.'])
-                    .find_map(|part| part.strip_suffix(what)?.trim().parse().ok())
+                counts.split([';', '.']).find_map(|part| part.strip_suffix(what)?.trim().parse().ok())
             };
             self.passed += count(" passed").unwrap_or(0);
             self.failed += count(" failed").unwrap_or(0);
             self.skipped += count(" ignored").unwrap_or(0);
         } else if let Some(rest) = line.strip_prefix("SKIPPED(") {
-            self.skipped += rest
-                .split(')')
-                .next()
-                .and_then(|count| count.parse().ok())
-                .unwrap_or(1);
+            self.skipped += rest.split(')').next().and_then(|count| count.parse().ok()).unwrap_or(1);
         } else if line.starts_with("LUXEL-GPU-SKIP") {
             self.skipped += 1;
         }
@@ -54,11 +48,7 @@ impl Add for Summary {
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} passed, {} failed, {} skipped",
-            self.passed, self.failed, self.skipped
-        )
+        write!(f, "{} passed, {} failed, {} skipped", self.passed, self.failed, self.skipped)
     }
 }
 

@@ -12,17 +12,8 @@ use crate::{machine, vulkan};
 pub(crate) fn run() -> Result<()> {
     vulkan::ensure()?;
     // Output of passing tests is shown because that is where a test says what it skipped.
-    let mut command = machine::cargo(&[
-        "test",
-        "--workspace",
-        "--no-fail-fast",
-        "--",
-        "--show-output",
-    ])?;
-    command
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
+    let mut command = machine::cargo(&["test", "--workspace", "--no-fail-fast", "--", "--show-output"])?;
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().context("cannot start cargo test")?;
     let mut summary = relay_output(&mut child).context("cannot read the output of cargo test")?;
     let status = child.wait().context("cannot wait for cargo test")?;
@@ -52,9 +43,7 @@ fn relay_output(child: &mut Child) -> Result<Summary> {
 
 fn relay(source: Option<impl Read>, mut sink: impl Write) -> std::io::Result<Summary> {
     let mut summary = Summary::default();
-    let lines = source
-        .into_iter()
-        .flat_map(|source| BufReader::new(source).split(b'\n'));
+    let lines = source.into_iter().flat_map(|source| BufReader::new(source).split(b'\n'));
     for line in lines {
         let mut line = line?;
         summary.read(&String::from_utf8_lossy(&line));

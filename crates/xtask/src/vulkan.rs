@@ -34,9 +34,7 @@ pub(crate) fn ensure() -> Result<()> {
         );
         return Ok(());
     }
-    let Some(prefix) = apt_prefix() else {
-        bail!("{HOW_TO_GO_ON}")
-    };
+    let Some(prefix) = apt_prefix() else { bail!("{HOW_TO_GO_ON}") };
     println!(
         "xtask: no Vulkan driver was found; installing Mesa's software driver ({})",
         PACKAGES.join(", ")
@@ -53,20 +51,13 @@ fn is_there() -> bool {
 }
 
 fn has_loader() -> bool {
-    let listed = ["ldconfig", "/sbin/ldconfig"]
-        .iter()
-        .find_map(|program| output_of(program, &["-p"]));
+    let listed = ["ldconfig", "/sbin/ldconfig"].iter().find_map(|program| output_of(program, &["-p"]));
     listed.is_some_and(|libraries| libraries.contains("libvulkan.so.1"))
 }
 
 fn has_manifest() -> bool {
-    match ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"]
-        .iter()
-        .find_map(std::env::var_os)
-    {
-        Some(chosen) => {
-            std::env::split_paths(&chosen).any(|path| path.is_file() || has_json(&path))
-        }
+    match ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].iter().find_map(std::env::var_os) {
+        Some(chosen) => std::env::split_paths(&chosen).any(|path| path.is_file() || has_json(&path)),
         None => manifest_folders().iter().any(|folder| has_json(folder)),
     }
 }
@@ -74,22 +65,16 @@ fn has_manifest() -> bool {
 /// The folders that the loader searches.
 fn manifest_folders() -> Vec<PathBuf> {
     let home = std::env::var_os("HOME").map(|home| Path::new(&home).join(".local/share"));
-    let data =
-        std::env::var_os("XDG_DATA_DIRS").unwrap_or_else(|| "/usr/local/share:/usr/share".into());
-    let bases = std::env::split_paths(&data)
-        .chain(home)
-        .chain(["/etc".into(), "/usr/share".into()]);
-    bases
-        .map(|base: PathBuf| base.join("vulkan/icd.d"))
-        .collect()
+    let data = std::env::var_os("XDG_DATA_DIRS").unwrap_or_else(|| "/usr/local/share:/usr/share".into());
+    let bases = std::env::split_paths(&data).chain(home).chain(["/etc".into(), "/usr/share".into()]);
+    bases.map(|base: PathBuf| base.join("vulkan/icd.d")).collect()
 }
 
 fn has_json(folder: &Path) -> bool {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    entries.map(|entry| entry.path()).any(|path| {
-        path.extension()
-            .is_some_and(|extension| extension == "json")
-    })
+    entries
+        .map(|entry| entry.path())
+        .any(|path| path.extension().is_some_and(|extension| extension == "json"))
 }
 
 /// The words before `apt-get` with which packages can be installed without asking anyone; `None` if they cannot.
@@ -104,22 +89,11 @@ fn apt_prefix() -> Option<&'static [&'static str]> {
 fn install(prefix: &[&str]) -> Result<()> {
     let apt_get = |arguments: &[&str]| {
         let environment = ["env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-q"];
-        let words: Vec<&str> = prefix
-            .iter()
-            .chain(&environment)
-            .chain(arguments)
-            .copied()
-            .collect();
+        let words: Vec<&str> = prefix.iter().chain(&environment).chain(arguments).copied().collect();
         run(Command::new(words[0]).args(&words[1..]))
     };
     apt_get(&["update"])?;
-    apt_get(
-        &[
-            &["install", "-y", "--no-install-recommends"],
-            PACKAGES.as_slice(),
-        ]
-        .concat(),
-    )
+    apt_get(&[&["install", "-y", "--no-install-recommends"], PACKAGES.as_slice()].concat())
 }
 
 #[cfg(test)]

@@ -63,5 +63,9 @@ pub fn sample<R: Real>(
 
 /// The albedo that first-hit outputs show.
 pub fn albedo<R: Real>(material: &MaterialRecord) -> R::Vec3 {
-    if material.kind == MATERIAL_DIELECTRIC { R::Vec3::splat(R::ONE) } else { R::Vec3::from_array(material.color) }
+    if material.kind == MATERIAL_DIELECTRIC {
+        R::Vec3::splat(R::ONE)
+    } else {
+        R::Vec3::from_array(material.color)
+    }
 }

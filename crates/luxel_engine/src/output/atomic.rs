@@ -21,15 +21,21 @@ pub(super) fn write_atomically(
 ) -> Result<(), OutputError> {
     let (mut file, target) = beside(path)?;
     write(file.as_file_mut())?;
-    file.persist(target).map(drop).map_err(|error| OutputError::Io { path: path.to_owned(), source: error.error })
+    file.persist(target)
+        .map(drop)
+        .map_err(|error| OutputError::Io { path: path.to_owned(), source: error.error })
 }
 
 /// A new file in the folder of `path`, which goes away unless it is moved, and where to move it.
 fn beside(path: &Path) -> Result<(NamedTempFile, PathBuf), OutputError> {
     let path_buf = || path.to_owned();
     let target = match fs::metadata(path) {
-        Ok(there) if there.is_dir() => return Err(OutputError::NotAFile { path: path_buf(), what: "folder" }),
-        Ok(there) if !there.is_file() => return Err(OutputError::NotAFile { path: path_buf(), what: "device" }),
+        Ok(there) if there.is_dir() => {
+            return Err(OutputError::NotAFile { path: path_buf(), what: "folder" });
+        }
+        Ok(there) if !there.is_file() => {
+            return Err(OutputError::NotAFile { path: path_buf(), what: "device" });
+        }
         Ok(_) => fs::canonicalize(path).map_err(|source| OutputError::Io { path: path_buf(), source })?,
         Err(_) => path_buf(),
     };
@@ -124,7 +130,10 @@ mod tests {
 
         #[test]
         fn devices_are_left_alone_and_links_followed() {
-            assert!(matches!(check(Path::new("/dev/null")), Err(OutputError::NotAFile { what: "device", .. })));
+            assert!(matches!(
+                check(Path::new("/dev/null")),
+                Err(OutputError::NotAFile { what: "device", .. })
+            ));
             let folder = tempfile::tempdir().unwrap();
             let (real, link) = (folder.path().join("real.png"), folder.path().join("link.png"));
             write(&real, "old").unwrap();

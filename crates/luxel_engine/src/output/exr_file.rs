@@ -7,8 +7,8 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, Error, FlatSamples, Image, LayerAttributes, SmallVec, Text,
-    WritableImage, f16,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, Error, FlatSamples, Image, LayerAttributes, SmallVec,
+    Text, WritableImage, f16,
 };
 use luxel_film::aov::{LayerValues, beauty_layers};
 use luxel_film::{AovKind, Film, Layer};
@@ -40,7 +40,8 @@ pub fn write_exr(
     let refuse = |message: String| OutputError::Encode { path: path.to_owned(), message };
     let mut layers = beauty_layers(film);
     for kind in kinds {
-        let missing = || refuse(format!("first hits were not traced, so there is no {} to write", kind.name()));
+        let missing =
+            || refuse(format!("first hits were not traced, so there is no {} to write", kind.name()));
         layers.extend(kind.layers(film).ok_or_else(missing)?);
     }
     let pixel_count = film.width as usize * film.height as usize;
@@ -62,18 +63,25 @@ fn encode(
     precision: Precision,
     metadata: &Metadata,
 ) -> Result<(), Error> {
-    let channels: SmallVec<_> =
-        layers.into_iter().map(|layer| AnyChannel::new(layer.name, samples(layer.values, precision))).collect();
+    let channels: SmallVec<_> = layers
+        .into_iter()
+        .map(|layer| AnyChannel::new(layer.name, samples(layer.values, precision)))
+        .collect();
     let size = (film.width as usize, film.height as usize);
-    let layer =
-        exr::prelude::Layer::new(size, attributes(metadata), Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
+    let layer = exr::prelude::Layer::new(
+        size,
+        attributes(metadata),
+        Encoding::SMALL_LOSSLESS,
+        AnyChannels::sort(channels),
+    );
     let mut out = BufWriter::new(file);
     Image::from_layer(layer).write().to_buffered(&mut out)?;
     Ok(out.flush()?)
 }
 
 fn attributes(metadata: &Metadata) -> LayerAttributes {
-    let mut attributes = LayerAttributes { software_name: Some(text(Metadata::SOFTWARE)), ..Default::default() };
+    let mut attributes =
+        LayerAttributes { software_name: Some(text(Metadata::SOFTWARE)), ..Default::default() };
     for (key, value) in metadata.entries() {
         attributes.other.insert(text(key), AttributeValue::Text(text(&value)));
     }
@@ -87,7 +95,9 @@ fn text(utf8: &str) -> Text {
 
 fn samples(values: LayerValues, precision: Precision) -> FlatSamples {
     match (values, precision) {
-        (LayerValues::Color(values), Precision::Half) => FlatSamples::F16(values.into_iter().map(half).collect()),
+        (LayerValues::Color(values), Precision::Half) => {
+            FlatSamples::F16(values.into_iter().map(half).collect())
+        }
         (LayerValues::Color(values) | LayerValues::Float(values), _) => FlatSamples::F32(values),
         (LayerValues::Integer(values), _) => FlatSamples::U32(values),
     }
@@ -183,13 +193,17 @@ mod tests {
     fn what_the_film_lacks_is_one_clear_error_and_no_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
-        let write = |film: &Film, kinds: &[AovKind]| write_exr(&path, film, kinds, Precision::Half, &example());
+        let write =
+            |film: &Film, kinds: &[AovKind]| write_exr(&path, film, kinds, Precision::Half, &example());
 
         let bare = Film { aovs: None, ..film() };
         write(&bare, &[AovKind::SampleCount]).unwrap();
         std::fs::remove_file(&path).unwrap();
         let error = write(&bare, &[AovKind::Normal]).unwrap_err().to_string();
-        assert!(error.ends_with("a.exr: first hits were not traced, so there is no normal to write"), "{error}");
+        assert!(
+            error.ends_with("a.exr: first hits were not traced, so there is no normal to write"),
+            "{error}"
+        );
 
         let torn = Film { height: 4, ..film() };
         for bad in [torn, Film::new(0, 7)] {

@@ -2,8 +2,8 @@
 
 use luxel_gpu::testing::gpu_or_fail;
 use luxel_gpu::{
-    Frame, Gpu, GpuBuffer, GpuError, GpuRequest, LimitsTier, Pipeline, PipelineCache,
-    SoftwarePolicy, Submission, Uniform,
+    Frame, Gpu, GpuBuffer, GpuError, GpuRequest, LimitsTier, Pipeline, PipelineCache, SoftwarePolicy,
+    Submission, Uniform,
 };
 
 #[test]
@@ -15,10 +15,7 @@ fn what_is_written_is_read() {
     buffer.write(&gpu, 10, &[7_u32, 8]).unwrap();
     assert_eq!(buffer.read::<u32>(&gpu, 9, 4).unwrap(), [9, 7, 8, 12]);
     assert_eq!(buffer.read::<u32>(&gpu, 0, 0).unwrap(), [0_u32; 0]);
-    assert_eq!(
-        buffer.read::<[f32; 4]>(&gpu, 1, 1).unwrap()[0].map(f32::to_bits),
-        [4, 5, 6, 7]
-    );
+    assert_eq!(buffer.read::<[f32; 4]>(&gpu, 1, 1).unwrap()[0].map(f32::to_bits), [4, 5, 6, 7]);
 }
 
 #[test]
@@ -43,10 +40,7 @@ fn growth_doubles_keeps_the_contents_and_zeroes_the_rest() {
     assert_eq!(read[100..], [0; 100]);
     assert!(buffer.replace(&gpu, &[2_u32; 1000]).unwrap());
     assert_eq!(buffer.read::<u32>(&gpu, 999, 1).unwrap(), [2]);
-    assert_eq!(
-        GpuBuffer::new(&gpu, "empty", 0).unwrap().capacity_bytes(),
-        256
-    );
+    assert_eq!(GpuBuffer::new(&gpu, "empty", 0).unwrap().capacity_bytes(), 256);
 }
 
 #[test]
@@ -54,10 +48,7 @@ fn bad_ranges_are_refused() {
     let Some(gpu) = gpu_or_fail() else { return };
     let buffer = GpuBuffer::from_slice(&gpu, "small", &[0_u32; 64]).unwrap();
     let bad = |result: Result<(), GpuError>| {
-        assert!(
-            matches!(result, Err(GpuError::BadRange { .. })),
-            "{result:?}"
-        )
+        assert!(matches!(result, Err(GpuError::BadRange { .. })), "{result:?}")
     };
     bad(buffer.write(&gpu, 64, &[1_u32]));
     bad(buffer.write(&gpu, u64::MAX, &[1_u32]));
@@ -84,19 +75,11 @@ fn sizes_are_checked_against_the_tier() {
     let error = GpuBuffer::new(&gpu, "nodes", limit + 1).unwrap_err();
     assert_eq!(
         error,
-        GpuError::LimitExceeded {
-            what: "buffer 'nodes' in bytes".to_owned(),
-            needs: limit + 1,
-            has: limit
-        }
+        GpuError::LimitExceeded { what: "buffer 'nodes' in bytes".to_owned(), needs: limit + 1, has: limit }
     );
     let mut buffer = GpuBuffer::new(&gpu, "nodes", 100 << 20).unwrap();
     buffer.reserve(&gpu, 101 << 20).unwrap();
-    assert_eq!(
-        buffer.capacity_bytes(),
-        limit,
-        "doubling stops at the limit"
-    );
+    assert_eq!(buffer.capacity_bytes(), limit, "doubling stops at the limit");
     assert!(buffer.reserve(&gpu, limit + 4).is_err());
     assert_eq!(buffer.capacity_bytes(), limit);
 }
@@ -104,17 +87,10 @@ fn sizes_are_checked_against_the_tier() {
 #[test]
 fn a_wrong_adapter_name_says_what_there_is() {
     let Some(gpu) = gpu_or_fail() else { return };
-    let request = GpuRequest {
-        adapter: Some("no such adapter".to_owned()),
-        ..GpuRequest::default()
-    };
+    let request = GpuRequest { adapter: Some("no such adapter".to_owned()), ..GpuRequest::default() };
     let error = Gpu::open(&request).unwrap_err().to_string();
     assert!(error.contains(&gpu.facts().name), "{error}");
-    assert!(
-        luxel_gpu::list_adapters()
-            .iter()
-            .any(|facts| facts.name == gpu.facts().name)
-    );
+    assert!(luxel_gpu::list_adapters().iter().any(|facts| facts.name == gpu.facts().name));
 }
 
 /// Resources of an ECS must be `Send + Sync + 'static`; a type that is not fails to compile here.

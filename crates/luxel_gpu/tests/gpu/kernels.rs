@@ -1,23 +1,14 @@
 //! Small kernels for the tests.
 
-use luxel_gpu::{
-    FeatureSet, Gpu, GpuError, Kernel, Overrides, Pipeline, PipelineCache, ShaderLibrary,
-};
+use luxel_gpu::{FeatureSet, Gpu, GpuError, Kernel, Overrides, Pipeline, PipelineCache, ShaderLibrary};
 use std::sync::Arc;
 
 /// `values[i] = values[i] * factor + offset.x`, twice with the feature `twice`; `factor` is an override constant.
-pub(crate) const SCALE: Kernel = Kernel {
-    module: "package::scale",
-    entry: "scale",
-    workgroup_size: [64, 1, 1],
-};
+pub(crate) const SCALE: Kernel =
+    Kernel { module: "package::scale", entry: "scale", workgroup_size: [64, 1, 1] };
 
 /// Adds 1 to every value, many times.
-pub(crate) const SPIN: Kernel = Kernel {
-    module: "package::spin",
-    entry: "spin",
-    workgroup_size: [64, 1, 1],
-};
+pub(crate) const SPIN: Kernel = Kernel { module: "package::spin", entry: "spin", workgroup_size: [64, 1, 1] };
 
 const MATHS: &str = "
 override factor: u32 = 3u;

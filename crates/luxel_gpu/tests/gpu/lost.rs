@@ -2,8 +2,7 @@
 
 use luxel_gpu::testing::gpu_or_fail;
 use luxel_gpu::{
-    Frame, Gpu, GpuBuffer, GpuError, GpuRequest, Overrides, PipelineCache, Resources,
-    SoftwarePolicy, Uniform,
+    Frame, Gpu, GpuBuffer, GpuError, GpuRequest, Overrides, PipelineCache, Resources, SoftwarePolicy, Uniform,
 };
 
 use crate::kernels::{SCALE, SPIN, features, library, pipeline};
@@ -31,12 +30,7 @@ fn after_a_loss_every_call_says_so() {
     assert_lost(values.reserve(&gpu, 10_000));
     assert_lost(shift.write(&gpu, &[0_u32; 4]));
     assert_lost(GpuBuffer::new(&gpu, "late", 256));
-    assert_lost(PipelineCache::new(library()).get(
-        &gpu,
-        &SCALE,
-        &features(true),
-        &Overrides::default(),
-    ));
+    assert_lost(PipelineCache::new(library()).get(&gpu, &SCALE, &features(true), &Overrides::default()));
     let mut frame = Frame::new(&gpu);
     assert_lost(frame.compute("late", &pipeline, &bindings, [1, 1, 1]));
     assert_lost(frame.submit());
@@ -54,13 +48,9 @@ fn a_loss_while_recording_shows_at_the_submit() {
     let Some(gpu) = gpu_or_fail() else { return };
     let pipeline = pipeline(&gpu, &SPIN, false).unwrap();
     let values = GpuBuffer::new(&gpu, "values", 256).unwrap();
-    let bindings = pipeline
-        .bind(&gpu, &Resources::new().buffer("values", &values))
-        .unwrap();
+    let bindings = pipeline.bind(&gpu, &Resources::new().buffer("values", &values)).unwrap();
     let mut frame = Frame::new(&gpu);
-    frame
-        .compute("before", &pipeline, &bindings, [1, 1, 1])
-        .unwrap();
+    frame.compute("before", &pipeline, &bindings, [1, 1, 1]).unwrap();
     gpu.destroy_for_test();
     // Recording into an encoder that is already open is free to succeed.
     let _ = frame.compute("after", &pipeline, &bindings, [1, 1, 1]);
@@ -73,13 +63,9 @@ fn a_loss_under_way_shows_at_the_wait() {
     let Some(gpu) = gpu_or_fail() else { return };
     let pipeline = pipeline(&gpu, &SPIN, false).unwrap();
     let values = GpuBuffer::new(&gpu, "values", 256).unwrap();
-    let bindings = pipeline
-        .bind(&gpu, &Resources::new().buffer("values", &values))
-        .unwrap();
+    let bindings = pipeline.bind(&gpu, &Resources::new().buffer("values", &values)).unwrap();
     let mut frame = Frame::new(&gpu);
-    frame
-        .compute("long", &pipeline, &bindings, [500, 1, 1])
-        .unwrap();
+    frame.compute("long", &pipeline, &bindings, [500, 1, 1]).unwrap();
     let submission = frame.submit().unwrap();
     gpu.destroy_for_test();
     assert_lost(submission.wait(&gpu));
@@ -122,10 +108,7 @@ const STEPS: usize = 9;
 
 #[test]
 fn a_loss_at_any_step_ends_the_job_with_lost_and_a_new_device_does_it() {
-    let request = GpuRequest {
-        software: SoftwarePolicy::Allow,
-        ..GpuRequest::from_env()
-    };
+    let request = GpuRequest { software: SoftwarePolicy::Allow, ..GpuRequest::from_env() };
     let Some(sound) = gpu_or_fail() else { return };
     let expected = job(&sound, usize::MAX).unwrap();
     for deadly in 0..STEPS {
@@ -141,27 +124,14 @@ fn a_wait_has_a_limit() {
     if gpu_or_fail().is_none() {
         return;
     }
-    let request = GpuRequest {
-        software: SoftwarePolicy::Allow,
-        timeout_secs: 0.001,
-        ..GpuRequest::from_env()
-    };
+    let request =
+        GpuRequest { software: SoftwarePolicy::Allow, timeout_secs: 0.001, ..GpuRequest::from_env() };
     let gpu = Gpu::open(&request).unwrap();
     let pipeline = pipeline(&gpu, &SPIN, false).unwrap();
     let values = GpuBuffer::new(&gpu, "values", 256).unwrap();
-    let bindings = pipeline
-        .bind(&gpu, &Resources::new().buffer("values", &values))
-        .unwrap();
+    let bindings = pipeline.bind(&gpu, &Resources::new().buffer("values", &values)).unwrap();
     let mut frame = Frame::new(&gpu);
-    frame
-        .compute("endless", &pipeline, &bindings, [500, 1, 1])
-        .unwrap();
+    frame.compute("endless", &pipeline, &bindings, [500, 1, 1]).unwrap();
     let error = frame.submit().unwrap().wait(&gpu).unwrap_err();
-    assert_eq!(
-        error,
-        GpuError::Timeout {
-            what: "passes endless".to_owned(),
-            secs: 0.001
-        }
-    );
+    assert_eq!(error, GpuError::Timeout { what: "passes endless".to_owned(), secs: 0.001 });
 }

@@ -13,15 +13,11 @@ fn scaled(gpu: &Gpu, cache: &mut PipelineCache, twice: bool, overrides: &Overrid
     let values = GpuBuffer::from_slice(gpu, "values", &values).unwrap();
     let extra = GpuBuffer::from_slice(gpu, "extra", &[0_u32, 1000, 0, 0]).unwrap();
     let shift = Uniform::new(gpu, "shift", &[7_u32, 0, 0, 0]).unwrap();
-    let resources = Resources::new()
-        .buffer("values", &values)
-        .buffer("extra", &extra)
-        .uniform("shift", &shift);
+    let resources =
+        Resources::new().buffer("values", &values).buffer("extra", &extra).uniform("shift", &shift);
     let bindings = pipeline.bind(gpu, &resources).unwrap();
     let mut frame = Frame::new(gpu);
-    frame
-        .compute("scale", &pipeline, &bindings, [2, 1, 1])
-        .unwrap();
+    frame.compute("scale", &pipeline, &bindings, [2, 1, 1]).unwrap();
     frame.submit().unwrap().wait(gpu).unwrap();
     values.read(gpu, 0, 100).unwrap()
 }
@@ -32,19 +28,10 @@ fn features_and_overrides_reach_the_kernel() {
     let mut cache = PipelineCache::new(library());
     let expect = |f: fn(u32) -> u32| (0..100).map(f).collect::<Vec<u32>>();
     let none = Overrides::default();
-    assert_eq!(
-        scaled(&gpu, &mut cache, false, &none),
-        expect(|i| 3 * i + 7)
-    );
-    assert_eq!(
-        scaled(&gpu, &mut cache, true, &none),
-        expect(|i| 3 * (3 * i + 7) + 1000)
-    );
+    assert_eq!(scaled(&gpu, &mut cache, false, &none), expect(|i| 3 * i + 7));
+    assert_eq!(scaled(&gpu, &mut cache, true, &none), expect(|i| 3 * (3 * i + 7) + 1000));
     let five = Overrides::from_iter([("factor", 5.0)]);
-    assert_eq!(
-        scaled(&gpu, &mut cache, false, &five),
-        expect(|i| 5 * i + 7)
-    );
+    assert_eq!(scaled(&gpu, &mut cache, false, &five), expect(|i| 5 * i + 7));
 }
 
 #[test]
@@ -52,47 +39,26 @@ fn every_pass_is_timed_also_beyond_one_block_of_timers() {
     let Some(gpu) = gpu_or_fail() else { return };
     let pipeline = pipeline(&gpu, &SPIN, false).unwrap();
     let values = GpuBuffer::new(&gpu, "values", 4 * 64).unwrap();
-    let bindings = pipeline
-        .bind(&gpu, &Resources::new().buffer("values", &values))
-        .unwrap();
+    let bindings = pipeline.bind(&gpu, &Resources::new().buffer("values", &values)).unwrap();
     let mut frame = Frame::new(&gpu);
     for round in 0..3 {
-        frame
-            .compute("long", &pipeline, &bindings, [100, 1, 1])
-            .unwrap();
+        frame.compute("long", &pipeline, &bindings, [100, 1, 1]).unwrap();
         for _ in 0..99 {
-            frame
-                .compute("short", &pipeline, &bindings, [1, 1, 1])
-                .unwrap();
+            frame.compute("short", &pipeline, &bindings, [1, 1, 1]).unwrap();
         }
         let times = frame.submit().unwrap().wait(&gpu).unwrap();
         assert_eq!(times.passes.len(), 100);
-        assert_eq!(
-            (times.passes[0].label, times.passes[99].label),
-            ("long", "short")
-        );
+        assert_eq!((times.passes[0].label, times.passes[99].label), ("long", "short"));
         if !gpu.facts().timestamps {
             assert!(times.passes.iter().all(|pass| pass.gpu_ms.is_none()));
             continue;
         }
-        let ms: Vec<f64> = times
-            .passes
-            .iter()
-            .map(|pass| pass.gpu_ms.unwrap())
-            .collect();
+        let ms: Vec<f64> = times.passes.iter().map(|pass| pass.gpu_ms.unwrap()).collect();
         let mut short = ms[1..].to_vec();
         short.sort_by(f64::total_cmp);
         // The first round includes the driver's compilation; the median is safe from a busy machine.
-        assert!(
-            round == 0 || ms[0] > 4.0 * short[49],
-            "long {} ms, short {} ms",
-            ms[0],
-            short[49]
-        );
-        assert!(
-            times.busy_ms() > 0.0 && times.busy_ms() <= 1.05 * times.wall_ms + 1.0,
-            "{times:?}"
-        );
+        assert!(round == 0 || ms[0] > 4.0 * short[49], "long {} ms, short {} ms", ms[0], short[49]);
+        assert!(times.busy_ms() > 0.0 && times.busy_ms() <= 1.05 * times.wall_ms + 1.0, "{times:?}");
     }
 }
 
@@ -101,14 +67,10 @@ fn several_submits_may_be_under_way() {
     let Some(gpu) = gpu_or_fail() else { return };
     let pipeline = pipeline(&gpu, &SPIN, false).unwrap();
     let values = GpuBuffer::new(&gpu, "values", 4 * 64).unwrap();
-    let bindings = pipeline
-        .bind(&gpu, &Resources::new().buffer("values", &values))
-        .unwrap();
+    let bindings = pipeline.bind(&gpu, &Resources::new().buffer("values", &values)).unwrap();
     let mut frame = Frame::new(&gpu);
     let mut submit = || {
-        frame
-            .compute("spin", &pipeline, &bindings, [10, 1, 1])
-            .unwrap();
+        frame.compute("spin", &pipeline, &bindings, [10, 1, 1]).unwrap();
         frame.submit().unwrap()
     };
     let submissions = [submit(), submit(), submit()];
@@ -117,15 +79,7 @@ fn several_submits_may_be_under_way() {
         assert!(submission.is_done(&gpu).unwrap());
         assert_eq!(submission.wait(&gpu).unwrap().passes.len(), 1);
     }
-    assert!(
-        frame
-            .submit()
-            .unwrap()
-            .wait(&gpu)
-            .unwrap()
-            .passes
-            .is_empty()
-    );
+    assert!(frame.submit().unwrap().wait(&gpu).unwrap().passes.is_empty());
 }
 
 #[test]
@@ -135,14 +89,10 @@ fn counts_from_a_buffer_drive_a_pass() {
     let values = GpuBuffer::from_slice(&gpu, "values", &[1_u32; 256]).unwrap();
     let counts = GpuBuffer::from_slice(&gpu, "counts", &[0_u32, 2, 1, 1]).unwrap();
     let shift = Uniform::new(&gpu, "shift", &[0_u32; 4]).unwrap();
-    let resources = Resources::new()
-        .buffer("values", &values)
-        .uniform("shift", &shift);
+    let resources = Resources::new().buffer("values", &values).uniform("shift", &shift);
     let bindings = pipeline.bind(&gpu, &resources).unwrap();
     let mut frame = Frame::new(&gpu);
-    frame
-        .compute_indirect("scale", &pipeline, &bindings, &counts, 4)
-        .unwrap();
+    frame.compute_indirect("scale", &pipeline, &bindings, &counts, 4).unwrap();
     let outside = frame.compute_indirect("scale", &pipeline, &bindings, &counts, 248);
     assert!(matches!(outside, Err(GpuError::BadRange { .. })));
     frame.submit().unwrap().wait(&gpu).unwrap();
@@ -172,30 +122,15 @@ fn a_missing_buffer_and_a_wrong_set_are_errors_not_panics() {
     let values = GpuBuffer::new(&gpu, "values", 256).unwrap();
     let resources = Resources::new().buffer("values", &values);
     let error = scale.bind(&gpu, &resources).unwrap_err();
-    assert!(
-        matches!(&error, GpuError::MissingBinding { binding, .. } if binding == "shift"),
-        "{error}"
-    );
+    assert!(matches!(&error, GpuError::MissingBinding { binding, .. } if binding == "shift"), "{error}");
 
     let for_spin = spin.bind(&gpu, &resources).unwrap();
     let mut frame = Frame::new(&gpu);
-    frame
-        .compute("mixed up", &scale, &for_spin, [1, 1, 1])
-        .unwrap();
+    frame.compute("mixed up", &scale, &for_spin, [1, 1, 1]).unwrap();
     let error = frame.submit().unwrap_err();
-    assert!(
-        matches!(&error, GpuError::Validation { what, .. } if what.contains("mixed up")),
-        "{error}"
-    );
+    assert!(matches!(&error, GpuError::Validation { what, .. } if what.contains("mixed up")), "{error}");
     let too_many = frame.compute("wide", &spin, &for_spin, [65_536, 1, 1]);
-    assert!(matches!(
-        too_many,
-        Err(GpuError::LimitExceeded {
-            needs: 65_536,
-            has: 65_535,
-            ..
-        })
-    ));
+    assert!(matches!(too_many, Err(GpuError::LimitExceeded { needs: 65_536, has: 65_535, .. })));
     frame.compute("spin", &spin, &for_spin, [1, 1, 1]).unwrap();
     frame.submit().unwrap().wait(&gpu).unwrap();
 }
@@ -207,9 +142,7 @@ fn one_submit_or_many_give_the_same_bits() {
     let data: Vec<u32> = (0..4096).collect();
     let run = |submits: usize| {
         let values = GpuBuffer::from_slice(&gpu, "values", &data).unwrap();
-        let bindings = pipeline
-            .bind(&gpu, &Resources::new().buffer("values", &values))
-            .unwrap();
+        let bindings = pipeline.bind(&gpu, &Resources::new().buffer("values", &values)).unwrap();
         let mut frame = Frame::new(&gpu);
         let groups = workgroups_for(4096, 64, gpu.limits()).unwrap();
         for pass in 0..6 {

@@ -1,28 +1,19 @@
 //! Linking, introspection, and what shader errors look like. No GPU is needed, but for the last ones.
 
 use luxel_gpu::testing::gpu_or_fail;
-use luxel_gpu::{
-    BindingAccess, FeatureSet, GpuError, Kernel, Overrides, PipelineCache, ShaderLibrary,
-};
+use luxel_gpu::{BindingAccess, FeatureSet, GpuError, Kernel, Overrides, PipelineCache, ShaderLibrary};
 
 use crate::kernels::{SCALE, features, library};
 
 #[test]
 fn a_feature_left_out_leaves_no_code_and_no_binding() {
     let without = library().link(&SCALE, &features(false)).unwrap();
-    let names: Vec<_> = without
-        .bindings
-        .iter()
-        .map(|binding| binding.name.as_str())
-        .collect();
+    let names: Vec<_> = without.bindings.iter().map(|binding| binding.name.as_str()).collect();
     assert_eq!(names, ["shift", "values"]);
     assert!(!without.wgsl.contains("extra"));
     let mut functions = without.functions.clone();
     functions.sort();
-    assert_eq!(
-        functions,
-        ["package::maths::scaled", "package::scale::second"]
-    );
+    assert_eq!(functions, ["package::maths::scaled", "package::scale::second"]);
 
     let with = library().link(&SCALE, &features(true)).unwrap();
     let extra = with.binding("extra").unwrap();
@@ -34,22 +25,12 @@ fn a_feature_left_out_leaves_no_code_and_no_binding() {
 fn introspection_names_what_the_source_names() {
     let shader = library().link(&SCALE, &features(false)).unwrap();
     let shift = shader.binding("shift").unwrap();
-    assert_eq!(
-        (shift.access, shift.min_bytes),
-        (BindingAccess::Uniform, 16)
-    );
+    assert_eq!((shift.access, shift.min_bytes), (BindingAccess::Uniform, 16));
     let values = shader.binding("values").unwrap();
-    assert_eq!(
-        (values.access, values.min_bytes),
-        (BindingAccess::StorageReadWrite, 4)
-    );
+    assert_eq!((values.access, values.min_bytes), (BindingAccess::StorageReadWrite, 4));
     let layout = shader.layout("Shift").unwrap();
     assert_eq!(layout.size, 16);
-    let members: Vec<_> = layout
-        .members
-        .iter()
-        .map(|m| (m.name.as_str(), m.offset))
-        .collect();
+    let members: Vec<_> = layout.members.iter().map(|m| (m.name.as_str(), m.offset)).collect();
     assert_eq!(members, [("x", 0), ("y", 4), ("z", 8), ("w", 12)]);
     assert_eq!(shader.overrides().collect::<Vec<_>>(), ["factor"]);
 }
@@ -60,22 +41,11 @@ fn error_of(source: &'static str, features: &FeatureSet) -> (String, String) {
         ("package::main", source),
         ("package::rng", "fn next() -> u32 { return 1u; }"),
     ]);
-    let kernel = Kernel {
-        module: "package::main",
-        entry: "run",
-        workgroup_size: [1, 1, 1],
-    };
+    let kernel = Kernel { module: "package::main", entry: "run", workgroup_size: [1, 1, 1] };
     match library.link(&kernel, features) {
-        Err(GpuError::Shader {
-            kernel,
-            message,
-            excerpt,
-        }) => {
+        Err(GpuError::Shader { kernel, message, excerpt }) => {
             assert_eq!(kernel, "package::main::run");
-            assert!(
-                !message.contains('\u{1b}') && !excerpt.contains('\u{1b}'),
-                "no colours"
-            );
+            assert!(!message.contains('\u{1b}') && !excerpt.contains('\u{1b}'), "no colours");
             (message, excerpt)
         }
         other => panic!("expected a shader error, got {other:?}"),
@@ -84,23 +54,16 @@ fn error_of(source: &'static str, features: &FeatureSet) -> (String, String) {
 
 #[test]
 fn a_syntax_error_names_file_line_and_place() {
-    let (message, excerpt) = error_of(
-        "\n@compute @workgroup_size(1) fn run() { let a = ; }",
-        &FeatureSet::default(),
-    );
+    let (message, excerpt) =
+        error_of("\n@compute @workgroup_size(1) fn run() { let a = ; }", &FeatureSet::default());
     assert_eq!(message, "unexpected token `;`");
-    assert!(
-        excerpt.starts_with("  --> package::main:2:48\n"),
-        "{message}\n{excerpt}"
-    );
+    assert!(excerpt.starts_with("  --> package::main:2:48\n"), "{message}\n{excerpt}");
 }
 
 #[test]
 fn an_unknown_name_is_named() {
-    let (message, excerpt) = error_of(
-        "@compute @workgroup_size(1) fn run() { let a = missing(1u); }",
-        &FeatureSet::default(),
-    );
+    let (message, excerpt) =
+        error_of("@compute @workgroup_size(1) fn run() { let a = missing(1u); }", &FeatureSet::default());
     assert!(message.contains("missing"), "{message}\n{excerpt}");
     assert!(excerpt.contains("package::main"), "{message}\n{excerpt}");
 }
@@ -112,14 +75,8 @@ fn a_type_error_shows_the_linked_text() {
         &FeatureSet::default(),
     );
     assert!(message.contains("f32"), "{message}\n{excerpt}");
-    assert!(
-        excerpt.contains("package_rng_next") && excerpt.contains('^'),
-        "{message}\n{excerpt}"
-    );
-    assert!(
-        excerpt.contains("package::main::run (linked)"),
-        "{message}\n{excerpt}"
-    );
+    assert!(excerpt.contains("package_rng_next") && excerpt.contains('^'), "{message}\n{excerpt}");
+    assert!(excerpt.contains("package::main::run (linked)"), "{message}\n{excerpt}");
 }
 
 #[test]
@@ -133,8 +90,7 @@ fn an_invalid_program_shows_the_linked_text() {
 
 #[test]
 fn a_missing_feature_is_an_error_and_a_surplus_one_is_not() {
-    let source =
-        "@if(fog) fn fog() {}\n@compute @workgroup_size(1) fn run() { @if(fog) { fog(); } }";
+    let source = "@if(fog) fn fog() {}\n@compute @workgroup_size(1) fn run() { @if(fog) { fog(); } }";
     let (message, _) = error_of(source, &FeatureSet::from_iter([("rain", true)]));
     assert!(message.contains("fog"), "{message}");
     let surplus = FeatureSet::from_iter([("twice", false), ("rain", true)]);
@@ -145,19 +101,10 @@ fn a_missing_feature_is_an_error_and_a_surplus_one_is_not() {
 fn entry_module_and_workgroup_size_are_checked() {
     let source = "@compute @workgroup_size(2) fn run() {}";
     let (message, _) = error_of(source, &FeatureSet::default());
-    assert_eq!(
-        message,
-        "the workgroup size is [2, 1, 1] in the shader and [1, 1, 1] in Rust"
-    );
-    let (message, _) = error_of(
-        "@compute @workgroup_size(1) fn other() {}",
-        &FeatureSet::default(),
-    );
+    assert_eq!(message, "the workgroup size is [2, 1, 1] in the shader and [1, 1, 1] in Rust");
+    let (message, _) = error_of("@compute @workgroup_size(1) fn other() {}", &FeatureSet::default());
     assert_eq!(message, "no entry point 'run' in package::main");
-    let nowhere = Kernel {
-        module: "package::nowhere",
-        ..SCALE
-    };
+    let nowhere = Kernel { module: "package::nowhere", ..SCALE };
     let error = library().link(&nowhere, &features(false)).unwrap_err();
     assert!(error.to_string().contains("package::nowhere"), "{error}");
     let (message, _) = error_of(
@@ -178,10 +125,7 @@ fn every_embedded_module_has_its_path() {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else if path
-                .extension()
-                .is_some_and(|extension| extension == "wesl")
-            {
+            } else if path.extension().is_some_and(|extension| extension == "wesl") {
                 files += 1;
             }
         }
@@ -204,31 +148,18 @@ fn the_cache_compiles_each_text_once() {
         "a flag that the kernel does not read makes no new pipeline"
     );
     cache.get(&gpu, &SCALE, &features(true), &none).unwrap();
-    cache
-        .get(
-            &gpu,
-            &SCALE,
-            &features(false),
-            &Overrides::from_iter([("factor", 5.0)]),
-        )
-        .unwrap();
+    cache.get(&gpu, &SCALE, &features(false), &Overrides::from_iter([("factor", 5.0)])).unwrap();
     let records = cache.compile_records();
     assert_eq!(records.len(), 3);
     assert_eq!((records[0].functions, records[0].bindings), (2, 2));
-    assert!(
-        records
-            .iter()
-            .all(|record| record.wall_ms > 0.0 && record.cpu_ms.is_some_and(|ms| ms > 0.0))
-    );
+    assert!(records.iter().all(|record| record.wall_ms > 0.0 && record.cpu_ms.is_some_and(|ms| ms > 0.0)));
 }
 
 #[test]
 fn an_unknown_override_and_too_many_buffers_are_errors() {
     let Some(gpu) = gpu_or_fail() else { return };
     let unknown = Overrides::from_iter([("fcator", 5.0)]);
-    let error = PipelineCache::new(library())
-        .get(&gpu, &SCALE, &features(false), &unknown)
-        .unwrap_err();
+    let error = PipelineCache::new(library()).get(&gpu, &SCALE, &features(false), &unknown).unwrap_err();
     assert!(error.to_string().contains("'fcator'"), "{error}");
 
     let declarations: String = (0..9)
@@ -237,11 +168,7 @@ fn an_unknown_override_and_too_many_buffers_are_errors() {
     let uses: String = (0..9).map(|i| format!("b{i}[0] = 1u;")).collect();
     let source = format!("{declarations}@compute @workgroup_size(1) fn run() {{ {uses} }}");
     let library = ShaderLibrary::from_modules([("package::main", source)]);
-    let kernel = Kernel {
-        module: "package::main",
-        entry: "run",
-        workgroup_size: [1, 1, 1],
-    };
+    let kernel = Kernel { module: "package::main", entry: "run", workgroup_size: [1, 1, 1] };
     let error = PipelineCache::new(library)
         .get(&gpu, &kernel, &FeatureSet::default(), &Overrides::default())
         .unwrap_err();

@@ -80,11 +80,7 @@ impl TriangleMesh {
     /// A mesh of all `triangles`, numbered in order.
     pub(crate) fn numbered(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let triangle_ids = (0..).take(triangles.len()).collect();
-        Self {
-            positions,
-            triangles,
-            triangle_ids,
-        }
+        Self { positions, triangles, triangle_ids }
     }
 
     /// Smallest and largest coordinates of the corners that triangles use; `None` if there is no
@@ -121,11 +117,9 @@ impl fmt::Display for Dropped {
     /// The reasons that occur, as `2 bad index, 1 non-finite`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";
-        for (count, reason) in [
-            (self.bad_index, "bad index"),
-            (self.non_finite, "non-finite"),
-            (self.zero_area, "zero area"),
-        ] {
+        for (count, reason) in
+            [(self.bad_index, "bad index"), (self.non_finite, "non-finite"), (self.zero_area, "zero area")]
+        {
             if count > 0 {
                 write!(f, "{separator}{count} {reason}")?;
                 separator = ", ";

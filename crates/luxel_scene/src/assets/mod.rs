@@ -30,11 +30,7 @@ pub struct Assets {
 
 impl Default for Assets {
     fn default() -> Self {
-        Self {
-            next: 1,
-            meshes: BTreeMap::new(),
-            volumes: BTreeMap::new(),
-        }
+        Self { next: 1, meshes: BTreeMap::new(), volumes: BTreeMap::new() }
     }
 }
 
@@ -94,11 +90,7 @@ impl Assets {
         volumes: BTreeMap<AssetId, Arc<VolumeAsset>>,
         next: u32,
     ) -> Self {
-        Self {
-            next,
-            meshes,
-            volumes,
-        }
+        Self { next, meshes, volumes }
     }
 
     fn next_id(&mut self) -> AssetId {

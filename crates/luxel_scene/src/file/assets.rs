@@ -15,10 +15,7 @@ use super::read::invalid;
 use super::record::SceneFile;
 
 /// Everything that `file`, which lies at `path`, lists; each model file is read once.
-pub(super) fn load_assets(
-    path: &Path,
-    file: &SceneFile,
-) -> Result<(Assets, LoadReport), SceneError> {
+pub(super) fn load_assets(path: &Path, file: &SceneFile) -> Result<(Assets, LoadReport), SceneError> {
     let mut objs = ObjCache::default();
     let mut report = LoadReport::default();
     let mut meshes = BTreeMap::new();
@@ -36,9 +33,7 @@ pub(super) fn load_assets(
         volumes.insert(id, Arc::new(volume_asset(source, &mut report)?));
     }
     let used = file.meshes.keys().chain(file.volumes.keys()).max();
-    let next = used
-        .map_or(1, |id| id.0 + 1)
-        .max(file.next_asset.unwrap_or(1));
+    let next = used.map_or(1, |id| id.0 + 1).max(file.next_asset.unwrap_or(1));
     Ok((Assets::from_tables(meshes, volumes, next), report))
 }
 
@@ -49,10 +44,7 @@ pub(crate) fn mesh_asset(source: MeshSource, objs: &mut ObjCache) -> Result<Mesh
             let file = objs.get(path)?;
             let count = file.parts.len();
             let found = file.parts.get(*part as usize).ok_or_else(|| {
-                SceneError::unusable(
-                    path,
-                    format!("has {count} parts, so there is no part {part}"),
-                )
+                SceneError::unusable(path, format!("has {count} parts, so there is no part {part}"))
             })?;
             (found.mesh.clone(), file.dropped)
         }
@@ -60,23 +52,13 @@ pub(crate) fn mesh_asset(source: MeshSource, objs: &mut ObjCache) -> Result<Mesh
             let file = objs.get(path)?;
             (file.whole(), file.dropped)
         }
-        recipe => (
-            procedural::mesh(recipe).unwrap_or_default(),
-            Dropped::default(),
-        ),
+        recipe => (procedural::mesh(recipe).unwrap_or_default(), Dropped::default()),
     };
-    Ok(MeshAsset {
-        source,
-        mesh,
-        dropped,
-    })
+    Ok(MeshAsset { source, mesh, dropped })
 }
 
 /// Follows a source whose path is absolute and whose numbers are in range.
-pub(crate) fn volume_asset(
-    source: VolumeSource,
-    report: &mut LoadReport,
-) -> Result<VolumeAsset, SceneError> {
+pub(crate) fn volume_asset(source: VolumeSource, report: &mut LoadReport) -> Result<VolumeAsset, SceneError> {
     let grid = match &source {
         VolumeSource::File(path) => {
             let file = VoxFile::read(path)?;
@@ -98,15 +80,9 @@ fn resolve_mesh(scene: &Path, id: AssetId, source: &MeshSource) -> Result<MeshSo
     })
 }
 
-fn resolve_volume(
-    scene: &Path,
-    id: AssetId,
-    source: &VolumeSource,
-) -> Result<VolumeSource, SceneError> {
+fn resolve_volume(scene: &Path, id: AssetId, source: &VolumeSource) -> Result<VolumeSource, SceneError> {
     Ok(match source {
-        VolumeSource::File(path) => {
-            VolumeSource::File(resolve(scene, format!("volume {}", id.0), path)?)
-        }
+        VolumeSource::File(path) => VolumeSource::File(resolve(scene, format!("volume {}", id.0), path)?),
         recipe => recipe.clone(),
     })
 }

@@ -32,20 +32,12 @@ fn require(holds: bool, field: &str, rule: &str, value: impl Debug) -> Checked {
     if holds {
         Ok(())
     } else {
-        Err(Flaw {
-            field: field.to_owned(),
-            message: format!("must be {rule}, but is {value:?}"),
-        })
+        Err(Flaw { field: field.to_owned(), message: format!("must be {rule}, but is {value:?}") })
     }
 }
 
 fn positive(field: &str, value: f64) -> Checked {
-    require(
-        value.is_finite() && value > 0.0,
-        field,
-        "positive and finite",
-        value,
-    )
+    require(value.is_finite() && value > 0.0, field, "positive and finite", value)
 }
 
 fn between<T: PartialOrd + Debug>(field: &str, value: T, range: RangeInclusive<T>) -> Checked {
@@ -58,10 +50,7 @@ fn finite(field: &str, value: DVec3) -> Checked {
 }
 
 fn reflectance(field: &str, value: Vec3) -> Checked {
-    let holds = value
-        .to_array()
-        .iter()
-        .all(|channel| (0.0..=1.0).contains(channel));
+    let holds = value.to_array().iter().all(|channel| (0.0..=1.0).contains(channel));
     require(holds, field, "in 0 to 1 in each channel", value.to_array())
 }
 
@@ -102,11 +91,7 @@ pub(super) fn check_sections(file: &SceneFile) -> Result<(), (String, Flaw)> {
     for (field, id) in [("next_id", file.next_id), ("next_asset", file.next_asset)] {
         between(field, id.unwrap_or(1), 1..=MAX_ID + 1).map_err(at("file"))?;
     }
-    let scattered: u64 = file
-        .scatter
-        .iter()
-        .map(|scatter| u64::from(scatter.count))
-        .sum();
+    let scattered: u64 = file.scatter.iter().map(|scatter| u64::from(scatter.count)).sum();
     let entities = file.entities.len() as u64 + scattered;
     between("number", entities, 0..=MAX_ENTITIES).map_err(at("entities"))
 }
@@ -114,11 +99,7 @@ pub(super) fn check_sections(file: &SceneFile) -> Result<(), (String, Flaw)> {
 fn check_environment(environment: &Environment) -> Checked {
     match *environment {
         Environment::Constant(value) => radiance("constant", value),
-        Environment::Gradient {
-            zenith,
-            horizon,
-            ground,
-        } => {
+        Environment::Gradient { zenith, horizon, ground } => {
             radiance("zenith", zenith)?;
             radiance("horizon", horizon)?;
             radiance("ground", ground)
@@ -139,11 +120,7 @@ pub(super) fn check_entity(entity: &EntityRecord) -> Checked {
     check_transform(&entity.transform)?;
     at_most_one(
         "sphere, mesh and voxels",
-        &[
-            entity.sphere.is_some(),
-            entity.mesh.is_some(),
-            entity.voxels.is_some(),
-        ],
+        &[entity.sphere.is_some(), entity.mesh.is_some(), entity.voxels.is_some()],
     )?;
     if let Some(sphere) = &entity.sphere {
         positive("sphere.radius", sphere.radius)?;
@@ -158,19 +135,10 @@ fn check_transform(transform: &TransformRecord) -> Checked {
     finite("transform.translation", transform.translation)?;
     finite("transform.scale", transform.scale)?;
     let flat = transform.scale.to_array().contains(&0.0);
-    require(
-        !flat,
-        "transform.scale",
-        "non-zero on each axis",
-        transform.scale.to_array(),
-    )?;
+    require(!flat, "transform.scale", "non-zero on each axis", transform.scale.to_array())?;
     at_most_one(
         "transform.rotation, rotation_degrees and look_at",
-        &[
-            transform.rotation.is_some(),
-            transform.rotation_degrees.is_some(),
-            transform.look_at.is_some(),
-        ],
+        &[transform.rotation.is_some(), transform.rotation_degrees.is_some(), transform.look_at.is_some()],
     )?;
     if let Some(rotation) = transform.rotation {
         // Wide enough for six decimals written by hand; what is saved is never changed by it.
@@ -184,12 +152,7 @@ fn check_transform(transform: &TransformRecord) -> Checked {
     if let Some(target) = transform.look_at {
         finite("transform.look_at", target)?;
         let elsewhere = target != transform.translation;
-        require(
-            elsewhere,
-            "transform.look_at",
-            "another place than the translation",
-            target,
-        )?;
+        require(elsewhere, "transform.look_at", "another place than the translation", target)?;
     }
     Ok(())
 }
@@ -212,52 +175,29 @@ fn check_material(material: &Material) -> Checked {
 fn check_camera(camera: &CameraRecord) -> Checked {
     at_most_one(
         "camera.vertical_fov and vertical_fov_degrees",
-        &[
-            camera.vertical_fov.is_some(),
-            camera.vertical_fov_degrees.is_some(),
-        ],
+        &[camera.vertical_fov.is_some(), camera.vertical_fov_degrees.is_some()],
     )?;
     let open = |value: f64, end: f64| value > 0.0 && value < end;
     if let Some(angle) = camera.vertical_fov {
         let holds = open(angle, std::f64::consts::PI);
-        require(
-            holds,
-            "camera.vertical_fov",
-            "between 0 and π radians",
-            angle,
-        )?;
+        require(holds, "camera.vertical_fov", "between 0 and π radians", angle)?;
     }
     if let Some(angle) = camera.vertical_fov_degrees {
         let holds = open(angle, 180.0);
-        require(
-            holds,
-            "camera.vertical_fov_degrees",
-            "between 0 and 180",
-            angle,
-        )?;
+        require(holds, "camera.vertical_fov_degrees", "between 0 and 180", angle)?;
     }
     let lens = camera.lens_radius;
     let holds = lens.is_finite() && lens >= 0.0;
     require(holds, "camera.lens_radius", "finite and not negative", lens)?;
-    camera.focus_distance.map_or(Ok(()), |distance| {
-        positive("camera.focus_distance", distance)
-    })
+    camera.focus_distance.map_or(Ok(()), |distance| positive("camera.focus_distance", distance))
 }
 
 /// The numbers of a mesh recipe.
 pub(crate) fn check_mesh_source(source: &MeshSource) -> Checked {
     match *source {
-        MeshSource::File(_) | MeshSource::FilePart(..) | MeshSource::Quad | MeshSource::Cube => {
-            Ok(())
-        }
+        MeshSource::File(_) | MeshSource::FilePart(..) | MeshSource::Quad | MeshSource::Cube => Ok(()),
         MeshSource::Icosphere { subdivisions } => between("subdivisions", subdivisions, 0..=8),
-        MeshSource::TorusKnot {
-            p,
-            q,
-            tube,
-            segments,
-            sides,
-        } => {
+        MeshSource::TorusKnot { p, q, tube, segments, sides } => {
             between("p", p, 1..=64)?;
             between("q", q, 1..=64)?;
             between("tube", tube, 1e-4..=0.5)?;
@@ -286,12 +226,7 @@ fn check_scatter(scatter: &Scatter) -> Checked {
     finite("min", scatter.min)?;
     finite("max", scatter.max)?;
     let ordered = scatter.min.cmple(scatter.max).all();
-    require(
-        ordered,
-        "max",
-        "at least min on each axis",
-        scatter.max.to_array(),
-    )?;
+    require(ordered, "max", "at least min on each axis", scatter.max.to_array())?;
     positive("radius", scatter.radius.0)?;
     positive("radius", scatter.radius.1)?;
     let ordered = scatter.radius.0 <= scatter.radius.1;

@@ -14,13 +14,7 @@ const MAX_DEPTH: usize = 1024;
 type Placed = (String, Flaw);
 
 fn flaw(place: String, field: &str, message: String) -> Placed {
-    (
-        place,
-        Flaw {
-            field: field.to_owned(),
-            message,
-        },
-    )
+    (place, Flaw { field: field.to_owned(), message })
 }
 
 /// Gives every entity an id, and returns the first id that is free.
@@ -29,25 +23,14 @@ pub(super) fn assign_ids(file: &mut SceneFile) -> Result<u32, Placed> {
     for entity in &file.entities {
         if let Some(StableId(id)) = entity.id {
             if !(1..=MAX_ID).contains(&id) {
-                return Err(flaw(
-                    entity.place(),
-                    "id",
-                    format!("must be in 1 to {MAX_ID}"),
-                ));
+                return Err(flaw(entity.place(), "id", format!("must be in 1 to {MAX_ID}")));
             }
             if !taken.insert(id) {
-                return Err(flaw(
-                    entity.place(),
-                    "id",
-                    "is used by another entity".to_owned(),
-                ));
+                return Err(flaw(entity.place(), "id", "is used by another entity".to_owned()));
             }
         }
     }
-    let mut next = taken
-        .last()
-        .map_or(1, |&id| id + 1)
-        .max(file.next_id.unwrap_or(1));
+    let mut next = taken.last().map_or(1, |&id| id + 1).max(file.next_id.unwrap_or(1));
     for entity in &mut file.entities {
         entity.id.get_or_insert_with(|| {
             next += 1;
@@ -59,31 +42,20 @@ pub(super) fn assign_ids(file: &mut SceneFile) -> Result<u32, Placed> {
 
 /// Checks every id that an entity or the file names, and that parents form trees.
 pub(super) fn check_references(file: &SceneFile) -> Result<(), Placed> {
-    let by_id: BTreeMap<StableId, &EntityRecord> = file
-        .entities
-        .iter()
-        .filter_map(|entity| Some((entity.id?, entity)))
-        .collect();
+    let by_id: BTreeMap<StableId, &EntityRecord> =
+        file.entities.iter().filter_map(|entity| Some((entity.id?, entity))).collect();
     for entity in &file.entities {
         let missing = |field: &str, kind: &str, id: u32| {
-            Err(flaw(
-                entity.place(),
-                field,
-                format!("names {kind} {id}, which does not exist"),
-            ))
+            Err(flaw(entity.place(), field, format!("names {kind} {id}, which does not exist")))
         };
         match *entity {
-            EntityRecord {
-                parent: Some(id), ..
-            } if !by_id.contains_key(&id) => {
+            EntityRecord { parent: Some(id), .. } if !by_id.contains_key(&id) => {
                 return missing("parent", "entity", id.0);
             }
             EntityRecord { mesh: Some(id), .. } if !file.meshes.contains_key(&id) => {
                 return missing("mesh", "mesh", id.0);
             }
-            EntityRecord {
-                voxels: Some(id), ..
-            } if !file.volumes.contains_key(&id) => {
+            EntityRecord { voxels: Some(id), .. } if !file.volumes.contains_key(&id) => {
                 return missing("voxels", "volume", id.0);
             }
             _ => {}
@@ -92,19 +64,12 @@ pub(super) fn check_references(file: &SceneFile) -> Result<(), Placed> {
     check_active_camera(file, &by_id)?;
     check_trees(&by_id)?;
     match file.meshes.keys().find(|id| file.volumes.contains_key(id)) {
-        Some(id) => Err(flaw(
-            format!("volume {}", id.0),
-            "id",
-            "is a mesh's id too".to_owned(),
-        )),
+        Some(id) => Err(flaw(format!("volume {}", id.0), "id", "is a mesh's id too".to_owned())),
         None => Ok(()),
     }
 }
 
-fn check_active_camera(
-    file: &SceneFile,
-    by_id: &BTreeMap<StableId, &EntityRecord>,
-) -> Result<(), Placed> {
+fn check_active_camera(file: &SceneFile, by_id: &BTreeMap<StableId, &EntityRecord>) -> Result<(), Placed> {
     match file.active_camera {
         Some(id) if by_id.get(&id).is_none_or(|entity| entity.camera.is_none()) => Err(flaw(
             "file".to_owned(),
@@ -132,10 +97,7 @@ fn check_trees(by_id: &BTreeMap<StableId, &EntityRecord>) -> Result<(), Placed> 
             chain.push(parent);
             above = by_id.get(&parent).and_then(|entity| entity.parent);
         }
-        let known = above
-            .and_then(|parent| depths.get(&parent))
-            .copied()
-            .unwrap_or(0);
+        let known = above.and_then(|parent| depths.get(&parent)).copied().unwrap_or(0);
         if known + chain.len() > MAX_DEPTH {
             return Err(too_deep(entity));
         }

@@ -38,12 +38,7 @@ pub(super) fn options() -> Options {
 }
 
 pub(super) fn invalid(path: &Path, place: String, flaw: Flaw) -> SceneError {
-    SceneError::Invalid {
-        path: path.to_owned(),
-        place,
-        field: flaw.field,
-        message: flaw.message,
-    }
+    SceneError::Invalid { path: path.to_owned(), place, field: flaw.field, message: flaw.message }
 }
 
 /// Gives ids and checks everything; returns the next free id.
@@ -68,21 +63,15 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<SceneFile, SceneError> {
     let Versioned { version } = from_ron(path, bytes)?;
     match version {
         VERSION => from_ron(path, bytes),
-        found => Err(SceneError::Version {
-            path: path.to_owned(),
-            found,
-            known: VERSION,
-        }),
+        found => Err(SceneError::Version { path: path.to_owned(), found, known: VERSION }),
     }
 }
 
 fn from_ron<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, SceneError> {
-    options()
-        .from_bytes(bytes)
-        .map_err(|SpannedError { code, span }| SceneError::Syntax {
-            path: path.to_owned(),
-            line: span.start.line,
-            column: span.start.col,
-            message: code.to_string(),
-        })
+    options().from_bytes(bytes).map_err(|SpannedError { code, span }| SceneError::Syntax {
+        path: path.to_owned(),
+        line: span.start.line,
+        column: span.start.col,
+        message: code.to_string(),
+    })
 }

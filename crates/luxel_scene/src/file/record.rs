@@ -73,9 +73,7 @@ pub(super) struct EntityRecord {
 impl EntityRecord {
     /// How messages call this entity.
     pub(super) fn place(&self) -> String {
-        let id = self
-            .id
-            .map_or_else(|| "without id".to_owned(), |StableId(id)| id.to_string());
+        let id = self.id.map_or_else(|| "without id".to_owned(), |StableId(id)| id.to_string());
         match &self.name {
             Some(Name(name)) => format!("entity {id} \"{name}\""),
             None => format!("entity {id}"),

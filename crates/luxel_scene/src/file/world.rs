@@ -88,9 +88,7 @@ pub(super) fn describe(world: &World) -> SceneFile {
     entities.sort_by_key(|record| record.id);
     let assets = world.get_resource::<Assets>().cloned().unwrap_or_default();
     let meshes = assets.meshes().map(|(id, mesh)| (id, mesh.source.clone()));
-    let volumes = assets
-        .volumes()
-        .map(|(id, volume)| (id, volume.source.clone()));
+    let volumes = assets.volumes().map(|(id, volume)| (id, volume.source.clone()));
     SceneFile {
         version: VERSION,
         next_id: world.get_resource::<StableIds>().map(StableIds::peek),
@@ -110,13 +108,8 @@ fn describe_entity(world: &World, entity: EntityRef) -> EntityRecord {
     EntityRecord {
         id: entity.get().copied(),
         name: entity.get::<Name>().cloned(),
-        parent: parent
-            .and_then(|parent| world.get::<StableId>(parent))
-            .copied(),
-        transform: entity
-            .get::<Transform>()
-            .map(TransformRecord::of)
-            .unwrap_or_default(),
+        parent: parent.and_then(|parent| world.get::<StableId>(parent)).copied(),
+        transform: entity.get::<Transform>().map(TransformRecord::of).unwrap_or_default(),
         sphere: entity.get::<Sphere>().copied(),
         mesh: entity.get::<MeshInstance>().map(|instance| instance.mesh),
         voxels: entity.get::<VoxelVolume>().map(|instance| instance.volume),

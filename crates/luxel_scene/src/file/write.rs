@@ -20,10 +20,7 @@ use super::world::describe;
 /// Writes `world` to `path`: beside it first, then in its place, so that at any moment the old or
 /// the new file is there, whole.
 pub(crate) fn save_scene(world: &World, path: &Path) -> Result<(), SceneError> {
-    let write_error = |source| SceneError::Write {
-        path: path.to_owned(),
-        source,
-    };
+    let write_error = |source| SceneError::Write { path: path.to_owned(), source };
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
@@ -58,19 +55,10 @@ pub(crate) fn world_hash(world: &World) -> Result<u64, SceneError> {
 }
 
 fn hash_mesh(hash: &mut Xxh3, mesh: &TriangleMesh) {
-    for coordinate in mesh
-        .positions
-        .iter()
-        .flat_map(|position| position.to_array())
-    {
+    for coordinate in mesh.positions.iter().flat_map(|position| position.to_array()) {
         hash.update(&coordinate.to_le_bytes());
     }
-    for index in mesh
-        .triangles
-        .as_flattened()
-        .iter()
-        .chain(&mesh.triangle_ids)
-    {
+    for index in mesh.triangles.as_flattened().iter().chain(&mesh.triangle_ids) {
         hash.update(&index.to_le_bytes());
     }
 }
@@ -86,16 +74,10 @@ fn hash_grid(hash: &mut Xxh3, grid: &VoxelGrid) {
 }
 
 fn to_ron(path: &Path, file: &SceneFile) -> Result<String, SceneError> {
-    let pretty = PrettyConfig::new()
-        .depth_limit(3)
-        .compact_arrays(true)
-        .new_line("\n");
+    let pretty = PrettyConfig::new().depth_limit(3).compact_arrays(true).new_line("\n");
     let text = options().to_string_pretty(file, pretty);
     text.map(|text| text + "\n")
-        .map_err(|error| SceneError::Write {
-            path: path.to_owned(),
-            source: io::Error::other(error),
-        })
+        .map_err(|error| SceneError::Write { path: path.to_owned(), source: io::Error::other(error) })
 }
 
 fn write_atomically(folder: &Path, path: &Path, content: &[u8]) -> io::Result<()> {
@@ -129,10 +111,7 @@ fn make_paths_relative(path: &Path, folder: &Path, file: &mut SceneFile) -> Resu
             Ok(())
         }
         None => {
-            let message = format!(
-                "cannot be written relative to the scene file: {}",
-                asset.display()
-            );
+            let message = format!("cannot be written relative to the scene file: {}", asset.display());
             let field = "path".to_owned();
             Err(invalid(path, place, Flaw { field, message }))
         }

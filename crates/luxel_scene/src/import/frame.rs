@@ -54,61 +54,40 @@ pub(crate) fn load_obj_scene(path: &Path, world: &mut World) -> Result<LoadRepor
         .iter()
         .filter_map(|part| part.mesh.bounds())
         .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-        .map(|(min, max)| Bounds {
-            min: min.as_dvec3(),
-            max: max.as_dvec3(),
-        })
+        .map(|(min, max)| Bounds { min: min.as_dvec3(), max: max.as_dvec3() })
         .ok_or_else(|| SceneError::unusable(path, "has no triangle"))?;
     let dropped = file.dropped_line(path).into_iter().collect();
     let root = spawn(world, (model_name(path), Transform::default()));
     for (index, part) in (0..).zip(file.parts) {
-        let mesh = world
-            .get_resource_or_init::<Assets>()
-            .insert_mesh(MeshAsset {
-                source: MeshSource::FilePart(path.clone(), index),
-                mesh: part.mesh,
-                dropped: file.dropped,
-            });
+        let mesh = world.get_resource_or_init::<Assets>().insert_mesh(MeshAsset {
+            source: MeshSource::FilePart(path.clone(), index),
+            mesh: part.mesh,
+            dropped: file.dropped,
+        });
         let shape = (Name(part.name), MeshInstance { mesh }, part.material);
         spawn(world, (shape, ChildOf(root)));
     }
     set_the_stage(world, bounds);
-    Ok(LoadReport {
-        dropped,
-        warnings: file.warnings,
-    })
+    Ok(LoadReport { dropped, warnings: file.warnings })
 }
 
 /// Fills `world` with a .vox model on a ground.
 pub(crate) fn load_vox_scene(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
     let path = &canonical(path)?;
     let file = VoxFile::read(path)?;
-    let bounds = Bounds {
-        min: DVec3::ZERO,
-        max: file.grid.size.as_dvec3(),
-    };
-    let report = LoadReport {
-        dropped: file.dropped_line(path).into_iter().collect(),
-        warnings: file.warnings,
-    };
+    let bounds = Bounds { min: DVec3::ZERO, max: file.grid.size.as_dvec3() };
+    let report =
+        LoadReport { dropped: file.dropped_line(path).into_iter().collect(), warnings: file.warnings };
     let volume = world
         .get_resource_or_init::<Assets>()
-        .insert_volume(VolumeAsset {
-            source: VolumeSource::File(path.clone()),
-            grid: file.grid,
-        });
+        .insert_volume(VolumeAsset { source: VolumeSource::File(path.clone()), grid: file.grid });
     spawn(world, (model_name(path), VoxelVolume { volume }));
     set_the_stage(world, bounds);
     Ok(report)
 }
 
 fn model_name(path: &Path) -> Name {
-    Name(
-        path.file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned(),
-    )
+    Name(path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
 }
 
 fn set_the_stage(world: &mut World, bounds: Bounds) {
@@ -118,9 +97,7 @@ fn set_the_stage(world: &mut World, bounds: Bounds) {
     let lamp = (
         Name("lamp".to_owned()),
         Transform::at(bounds.centre() + lamp_direction * 4.0 * radius),
-        Sphere {
-            radius: 1.7 * radius,
-        },
+        Sphere { radius: 1.7 * radius },
         Material::lamp(Vec3::new(1.0, 0.92, 0.80) * 4.2),
     );
     spawn(world, lamp);
@@ -142,11 +119,7 @@ fn spawn_ground(world: &mut World, bounds: Bounds) {
     let centre = bounds.centre();
     let transform = Transform {
         scale: DVec3::new(200.0 * radius, 1.0, 200.0 * radius),
-        ..Transform::at(DVec3::new(
-            centre.x,
-            bounds.min.y - radius / 1024.0,
-            centre.z,
-        ))
+        ..Transform::at(DVec3::new(centre.x, bounds.min.y - radius / 1024.0, centre.z))
     };
     let ground = (
         Name("ground".to_owned()),
@@ -166,11 +139,7 @@ fn spawn_camera(world: &mut World, bounds: Bounds, aspect: f64) {
     let camera = (
         Name("camera".to_owned()),
         Transform::looking_at(eye, bounds.centre()),
-        Camera {
-            vertical_fov,
-            lens_radius: 0.0,
-            focus_distance: distance,
-        },
+        Camera { vertical_fov, lens_radius: 0.0, focus_distance: distance },
         ActiveCamera,
     );
     spawn(world, camera);
@@ -180,13 +149,8 @@ fn spawn_camera(world: &mut World, bounds: Bounds, aspect: f64) {
 /// margin of a tenth.
 fn fitting_distance(bounds: Bounds, towards_camera: DVec3, vertical_fov: f64, aspect: f64) -> f64 {
     const MARGIN: f64 = 1.1;
-    let view = Transform::looking_at(towards_camera, DVec3::ZERO)
-        .rotation
-        .inverse();
-    let (tan_y, tan_x) = (
-        (vertical_fov * 0.5).tan(),
-        (vertical_fov * 0.5).tan() * aspect,
-    );
+    let view = Transform::looking_at(towards_camera, DVec3::ZERO).rotation.inverse();
+    let (tan_y, tan_x) = ((vertical_fov * 0.5).tan(), (vertical_fov * 0.5).tan() * aspect);
     bounds
         .corners()
         .map(|corner| {
@@ -202,29 +166,19 @@ mod tests {
 
     #[test]
     fn every_corner_is_in_the_picture_and_one_nearly_touches_its_edge() {
-        for size in [
-            DVec3::ONE,
-            DVec3::new(10.0, 0.1, 3.0),
-            DVec3::new(1e-6, 1e-3, 0.0),
-        ] {
-            let bounds = Bounds {
-                min: -size,
-                max: size * 2.0,
-            };
+        for size in [DVec3::ONE, DVec3::new(10.0, 0.1, 3.0), DVec3::new(1e-6, 1e-3, 0.0)] {
+            let bounds = Bounds { min: -size, max: size * 2.0 };
             let towards = DVec3::new(0.62, 0.42, 1.0).normalize();
             let (fov, aspect) = (0.6, 1.5);
             let distance = fitting_distance(bounds, towards, fov, aspect);
-            let camera =
-                Transform::looking_at(bounds.centre() + towards * distance, bounds.centre());
+            let camera = Transform::looking_at(bounds.centre() + towards * distance, bounds.centre());
             let edge = bounds
                 .corners()
                 .map(|corner| {
                     let p = camera.affine().inverse().transform_point3(corner);
                     assert!(p.z < 0.0);
                     let tan = (fov * 0.5).tan();
-                    (p.x / -p.z / (tan * aspect))
-                        .abs()
-                        .max((p.y / -p.z / tan).abs())
+                    (p.x / -p.z / (tan * aspect)).abs().max((p.y / -p.z / tan).abs())
                 })
                 .fold(0.0, f64::max);
             assert!((0.85..1.0).contains(&edge), "{edge}");

@@ -27,29 +27,18 @@ const MAX_MODEL_BYTES: u64 = 1 << 30;
 
 /// The bytes of a regular, non-empty file of at most `limit` bytes.
 pub(crate) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, SceneError> {
-    let read_error = |source| SceneError::Read {
-        path: path.to_owned(),
-        source,
-    };
+    let read_error = |source| SceneError::Read { path: path.to_owned(), source };
     let metadata = fs::metadata(path).map_err(read_error)?;
     if !metadata.is_file() {
-        return Err(SceneError::NotAFile {
-            path: path.to_owned(),
-        });
+        return Err(SceneError::NotAFile { path: path.to_owned() });
     }
     let bytes = metadata.len();
     if bytes > limit {
-        return Err(SceneError::TooLarge {
-            path: path.to_owned(),
-            bytes,
-            limit,
-        });
+        return Err(SceneError::TooLarge { path: path.to_owned(), bytes, limit });
     }
     let content = fs::read(path).map_err(read_error)?;
     if content.is_empty() {
-        return Err(SceneError::Empty {
-            path: path.to_owned(),
-        });
+        return Err(SceneError::Empty { path: path.to_owned() });
     }
     Ok(content)
 }
@@ -61,16 +50,10 @@ fn read_model(path: &Path) -> Result<Vec<u8>, SceneError> {
 
 /// The one true absolute path of a file that exists.
 pub(crate) fn canonical(path: &Path) -> Result<PathBuf, SceneError> {
-    path.canonicalize().map_err(|source| SceneError::Read {
-        path: path.to_owned(),
-        source,
-    })
+    path.canonicalize().map_err(|source| SceneError::Read { path: path.to_owned(), source })
 }
 
 /// How a file is called in messages and names: the last part of its path.
 pub(crate) fn file_name(path: &Path) -> String {
-    path.file_name().map_or_else(
-        || path.display().to_string(),
-        |name| name.to_string_lossy().into_owned(),
-    )
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }

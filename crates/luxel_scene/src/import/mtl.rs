@@ -26,25 +26,17 @@ pub(super) struct Library {
 impl Library {
     /// From names to indices, as `tobj` wants it; of two with one name the later counts.
     pub(super) fn indices(&self) -> HashMap<String, usize> {
-        self.materials
-            .iter()
-            .enumerate()
-            .map(|(index, (name, _))| (name.clone(), index))
-            .collect()
+        self.materials.iter().enumerate().map(|(index, (name, _))| (name.clone(), index)).collect()
     }
 
     /// The material with this index, or the default one.
     pub(super) fn material(&self, index: Option<usize>) -> Material {
-        self.find(index)
-            .map_or_else(Material::default, |found| found.1)
+        self.find(index).map_or_else(Material::default, |found| found.1)
     }
 
     /// The name of an object in a material.
     pub(super) fn part_name(&self, object: &str, index: Option<usize>) -> String {
-        self.find(index).map_or_else(
-            || object.to_owned(),
-            |(material, _)| format!("{object} ({material})"),
-        )
+        self.find(index).map_or_else(|| object.to_owned(), |(material, _)| format!("{object} ({material})"))
     }
 
     fn find(&self, index: Option<usize>) -> Option<&(String, Material)> {
@@ -55,11 +47,7 @@ impl Library {
 /// Reads every library that the model names, from its own folder or below.
 pub(super) fn read_libraries(obj: &Path, model: &CleanObj, warnings: &mut Vec<String>) -> Library {
     let mut library = Library::default();
-    for name in model
-        .libraries
-        .iter()
-        .flat_map(|names| file_names(obj, names))
-    {
+    for name in model.libraries.iter().flat_map(|names| file_names(obj, names)) {
         match read_library(obj, name, warnings) {
             Ok(materials) => library.materials.extend(materials),
             Err(reason) => warnings.push(format!(
@@ -79,11 +67,7 @@ pub(super) fn read_libraries(obj: &Path, model: &CleanObj, warnings: &mut Vec<St
 
 /// The files of one `mtllib` line: one whose name may hold spaces, or several.
 fn file_names<'a>(obj: &Path, names: &'a str) -> Vec<&'a str> {
-    if obj.with_file_name(names).exists() {
-        vec![names]
-    } else {
-        names.split_whitespace().collect()
-    }
+    if obj.with_file_name(names).exists() { vec![names] } else { names.split_whitespace().collect() }
 }
 
 fn read_library(
@@ -104,12 +88,9 @@ fn read_library(
         other => format!("cannot be used ({other})"),
     })?;
     let text = clean_mtl(&path, &String::from_utf8_lossy(&bytes), warnings);
-    let (materials, _) = tobj::load_mtl_buf(&mut text.as_bytes())
-        .map_err(|error| format!("is damaged ({error})"))?;
-    Ok(materials
-        .iter()
-        .map(|material| (material.name.clone(), surface_of(material)))
-        .collect())
+    let (materials, _) =
+        tobj::load_mtl_buf(&mut text.as_bytes()).map_err(|error| format!("is damaged ({error})"))?;
+    Ok(materials.iter().map(|material| (material.name.clone(), surface_of(material))).collect())
 }
 
 /// The lines that matter here and are well formed; a warning for each that is not.
@@ -126,16 +107,8 @@ fn clean_mtl(path: &Path, text: &str, warnings: &mut Vec<String>) -> String {
         };
         let is_number = |word: &str| word.parse::<f32>().is_ok_and(f32::is_finite);
         let illum_ok = !line.starts_with("illum")
-            || line
-                .split_whitespace()
-                .nth(1)
-                .is_some_and(|n| n.parse::<u8>().is_ok());
-        if words
-            .by_ref()
-            .take(numbers_wanted)
-            .filter(|word| is_number(word))
-            .count()
-            == numbers_wanted
+            || line.split_whitespace().nth(1).is_some_and(|n| n.parse::<u8>().is_ok());
+        if words.by_ref().take(numbers_wanted).filter(|word| is_number(word)).count() == numbers_wanted
             && illum_ok
         {
             kept.push_str(line);
@@ -163,25 +136,14 @@ fn surface_of(material: &tobj::Material) -> Material {
         _ if material.dissolve.is_some_and(|opacity| opacity < 0.5) => glass(material),
         Some(3 | 5 | 8) => Surface::Metal {
             albedo: albedo(material.specular, 0.9),
-            fuzz: 1.0
-                - (material.shininess.unwrap_or(1000.0) / 1000.0)
-                    .clamp(0.0, 1.0)
-                    .sqrt(),
+            fuzz: 1.0 - (material.shininess.unwrap_or(1000.0) / 1000.0).clamp(0.0, 1.0).sqrt(),
         },
-        _ => Surface::Lambert {
-            albedo: albedo(material.diffuse, 0.73),
-        },
+        _ => Surface::Lambert { albedo: albedo(material.diffuse, 0.73) },
     };
-    Material {
-        surface,
-        emission: colour(material.emissive, 0.0).max(Vec3::ZERO),
-    }
+    Material { surface, emission: colour(material.emissive, 0.0).max(Vec3::ZERO) }
 }
 
 fn glass(material: &tobj::Material) -> Surface {
-    let ior = material
-        .optical_density
-        .filter(|&ior| ior > 1.0)
-        .unwrap_or(1.5);
+    let ior = material.optical_density.filter(|&ior| ior > 1.0).unwrap_or(1.5);
     Surface::Dielectric { ior }
 }

@@ -91,11 +91,7 @@ impl ObjFile {
         for part in &self.parts {
             append(&mut whole, &part.mesh);
         }
-        let mut numbered: Vec<_> = whole
-            .triangle_ids
-            .into_iter()
-            .zip(whole.triangles)
-            .collect();
+        let mut numbered: Vec<_> = whole.triangle_ids.into_iter().zip(whole.triangles).collect();
         numbered.sort_unstable();
         (whole.triangle_ids, whole.triangles) = numbered.into_iter().unzip();
         whole
@@ -125,16 +121,14 @@ fn group(models: Vec<tobj::Model>, ids: &[u32], library: &mtl::Library) -> Vec<O
             continue;
         }
         let material_id = mesh.material_id;
-        let index = *found
-            .entry((name, material_id))
-            .or_insert_with_key(|(name, _)| {
-                parts.push(ObjPart {
-                    name: library.part_name(name, material_id),
-                    material: library.material(material_id),
-                    mesh: TriangleMesh::default(),
-                });
-                parts.len() - 1
+        let index = *found.entry((name, material_id)).or_insert_with_key(|(name, _)| {
+            parts.push(ObjPart {
+                name: library.part_name(name, material_id),
+                material: library.material(material_id),
+                mesh: TriangleMesh::default(),
             });
+            parts.len() - 1
+        });
         append(&mut parts[index].mesh, &triangles(&mesh, &mut ids));
     }
     parts
@@ -153,11 +147,7 @@ fn triangles(mesh: &tobj::Mesh, ids: &mut impl Iterator<Item = u32>) -> Triangle
 fn append(mesh: &mut TriangleMesh, more: &TriangleMesh) {
     let first = mesh.positions.len() as u32;
     mesh.positions.extend(&more.positions);
-    mesh.triangles.extend(
-        more.triangles
-            .iter()
-            .map(|corners| corners.map(|index| index + first)),
-    );
+    mesh.triangles.extend(more.triangles.iter().map(|corners| corners.map(|index| index + first)));
     mesh.triangle_ids.extend(&more.triangle_ids);
 }
 
@@ -179,9 +169,7 @@ impl ObjCache {
         if !self.0.contains_key(path) {
             self.0.insert(path.to_owned(), ObjFile::read(path)?);
         }
-        self.0
-            .get(path)
-            .ok_or_else(|| SceneError::unusable(path, "was not read"))
+        self.0.get(path).ok_or_else(|| SceneError::unusable(path, "was not read"))
     }
 
     /// All files that were read.

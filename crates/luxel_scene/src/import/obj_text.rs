@@ -70,10 +70,8 @@ impl CleanObj {
 
     /// A polygon as a fan of triangles, the good ones kept.
     fn face(&mut self, positions: &[Vec3], defined: usize, rest: &str) -> Result<(), String> {
-        let corners = rest
-            .split_whitespace()
-            .map(|word| corner(word, defined))
-            .collect::<Result<Vec<_>, _>>()?;
+        let corners =
+            rest.split_whitespace().map(|word| corner(word, defined)).collect::<Result<Vec<_>, _>>()?;
         if corners.len() < 3 {
             self.triangles += 1;
             self.dropped.bad_index += 1;
@@ -112,9 +110,7 @@ fn read_positions(path: &Path, text: &str) -> Result<Vec<Vec3>, SceneError> {
         let (keyword, rest) = split_keyword(&line);
         if keyword == "v" {
             let mut words = rest.split_whitespace().map(str::parse::<f32>);
-            let (Some(Ok(x)), Some(Ok(y)), Some(Ok(z))) =
-                (words.next(), words.next(), words.next())
-            else {
+            let (Some(Ok(x)), Some(Ok(y)), Some(Ok(z))) = (words.next(), words.next(), words.next()) else {
                 let message = format!("three numbers expected in \"{}\"", line.trim());
                 return Err(SceneError::model(path, number, message));
             };
@@ -134,9 +130,7 @@ fn corner(word: &str, defined: usize) -> Result<Option<usize>, String> {
         Err(_) => return Err(format!("\"{word}\" is not a corner")),
     };
     let absolute = if index < 0 {
-        i64::try_from(defined)
-            .ok()
-            .and_then(|n| n.checked_add(index))
+        i64::try_from(defined).ok().and_then(|n| n.checked_add(index))
     } else {
         index.checked_sub(1)
     };
@@ -176,6 +170,5 @@ fn logical_lines(text: &str) -> impl Iterator<Item = (usize, std::borrow::Cow<'_
 /// The first word of a line, and the rest without surrounding space.
 fn split_keyword(line: &str) -> (&str, &str) {
     let line = line.trim();
-    line.split_once(char::is_whitespace)
-        .map_or((line, ""), |(keyword, rest)| (keyword, rest.trim()))
+    line.split_once(char::is_whitespace).map_or((line, ""), |(keyword, rest)| (keyword, rest.trim()))
 }

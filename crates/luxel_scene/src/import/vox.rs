@@ -41,13 +41,9 @@ impl VoxFile {
     pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
         let bytes = read_model(path)?;
         let skeleton = vox_chunks::check(path, &bytes)?;
-        let data =
-            dot_vox::load_bytes(&bytes).map_err(|message| SceneError::unusable(path, message))?;
+        let data = dot_vox::load_bytes(&bytes).map_err(|message| SceneError::unusable(path, message))?;
         if data.models.len() != skeleton.models || data.models.is_empty() {
-            return Err(SceneError::unusable(
-                path,
-                "has no model, or a model without a size",
-            ));
+            return Err(SceneError::unusable(path, "has no model, or a model without a size"));
         }
         let instances = instances(path, &data, &skeleton)?;
         let voxels = count_voxels(path, &data, &instances)?;
@@ -59,12 +55,7 @@ impl VoxFile {
             };
             return Err(SceneError::unusable(path, message));
         }
-        Ok(Self {
-            grid: grid(path, cells, &data)?,
-            voxels,
-            dropped,
-            warnings: warnings(path, &data),
-        })
+        Ok(Self { grid: grid(path, cells, &data)?, voxels, dropped, warnings: warnings(path, &data) })
     }
 
     /// The line about voxels left out, if any were.
@@ -125,8 +116,7 @@ fn grid(path: &Path, mut cells: Vec<Cell>, data: &DotVoxData) -> Result<VoxelGri
     let min = [0, 1, 2].map(|a| axis(a).min().unwrap_or(0));
     let extent = [0, 1, 2].map(|a| axis(a).max().unwrap_or(0) - min[a] + 1);
     if extent.iter().any(|&edge| edge > MAX_EXTENT) {
-        let message =
-            format!("spreads over {extent:?} voxels; {MAX_EXTENT} along an edge is the most");
+        let message = format!("spreads over {extent:?} voxels; {MAX_EXTENT} along an edge is the most");
         return Err(SceneError::unusable(path, message));
     }
     let mut palette = Palette::new(data);
@@ -153,17 +143,12 @@ struct Palette<'a> {
 
 impl<'a> Palette<'a> {
     fn new(data: &'a DotVoxData) -> Self {
-        Self {
-            data,
-            new_index: [None; 256],
-            materials: Vec::new(),
-        }
+        Self { data, new_index: [None; 256], materials: Vec::new() }
     }
 
     fn index(&mut self, colour: u8) -> u8 {
         *self.new_index[usize::from(colour)].get_or_insert_with(|| {
-            self.materials
-                .push(vox_palette::material(self.data, colour));
+            self.materials.push(vox_palette::material(self.data, colour));
             (self.materials.len() - 1) as u8
         })
     }

@@ -33,22 +33,15 @@ const HEAD: usize = 12;
 pub(super) fn check(path: &Path, bytes: &[u8]) -> Result<Skeleton, SceneError> {
     let fail = |at: usize, message: &str| SceneError::model(path, format!("byte {at}"), message);
     if !bytes.starts_with(b"VOX ") {
-        return Err(fail(
-            0,
-            "is not a MagicaVoxel file: it does not begin with \"VOX \"",
-        ));
+        return Err(fail(0, "is not a MagicaVoxel file: it does not begin with \"VOX \""));
     }
-    let main = Head::at(bytes, 8)
-        .ok_or_else(|| fail(bytes.len(), "the file ends before its MAIN chunk"))?;
+    let main = Head::at(bytes, 8).ok_or_else(|| fail(bytes.len(), "the file ends before its MAIN chunk"))?;
     if main.name != *b"MAIN" {
         return Err(fail(8, "a MAIN chunk is expected"));
     }
     let end = main.end();
     if bytes.len() < end {
-        return Err(fail(
-            bytes.len(),
-            &format!("the file is cut short: {end} bytes are announced"),
-        ));
+        return Err(fail(bytes.len(), &format!("the file is cut short: {end} bytes are announced")));
     }
     let mut skeleton = Skeleton::default();
     let mut at = main.children();
@@ -59,9 +52,7 @@ pub(super) fn check(path: &Path, bytes: &[u8]) -> Result<Skeleton, SceneError> {
         if head.children_bytes > 0 {
             return Err(fail(at, "a chunk inside MAIN has chunks of its own"));
         }
-        skeleton
-            .add(&head.name, &bytes[head.content()..head.end()])
-            .map_err(|message| fail(at, &message))?;
+        skeleton.add(&head.name, &bytes[head.content()..head.end()]).map_err(|message| fail(at, &message))?;
         at = head.end();
     }
     Ok(skeleton)
@@ -93,9 +84,7 @@ fn check_size(content: &[u8]) -> Result<(), String> {
     for axis in 0..3 {
         let edge = word(content, axis * 4).ok_or("a model's size is three numbers")?;
         if edge > MAX_EDGE {
-            return Err(format!(
-                "a model of {edge} voxels along an edge; {MAX_EDGE} is the most"
-            ));
+            return Err(format!("a model of {edge} voxels along an edge; {MAX_EDGE} is the most"));
         }
     }
     Ok(())
@@ -134,8 +123,5 @@ impl Head {
 
 /// The little-endian word at a position.
 fn word(bytes: &[u8], at: usize) -> Option<u32> {
-    bytes
-        .get(at..)?
-        .first_chunk()
-        .map(|word| u32::from_le_bytes(*word))
+    bytes.get(at..)?.first_chunk().map(|word| u32::from_le_bytes(*word))
 }

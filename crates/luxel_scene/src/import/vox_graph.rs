@@ -36,25 +36,19 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    pub(super) const IDENTITY: Self = Self {
-        rows: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
-        shift: [0; 3],
-    };
+    pub(super) const IDENTITY: Self = Self { rows: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], shift: [0; 3] };
 
     /// What a frame says. A missing or damaged part changes nothing.
     fn of_frame(frame: &Frame) -> Self {
         let byte = frame.attributes.get("_r").and_then(|r| r.parse().ok());
         Self {
             rows: byte.and_then(rows_of_byte).unwrap_or(Self::IDENTITY.rows),
-            shift: frame
-                .position()
-                .map_or([0; 3], |t| [t.x.into(), t.y.into(), t.z.into()]),
+            shift: frame.position().map_or([0; 3], |t| [t.x.into(), t.y.into(), t.z.into()]),
         }
     }
 
     fn rotate(&self, v: [i64; 3]) -> [i64; 3] {
-        self.rows
-            .map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+        self.rows.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
     }
 
     /// First `inner`, then `self`.
@@ -70,8 +64,7 @@ impl Placement {
     /// The cell of the world that a cell of a model of this `size` fills. A model turns about the
     /// corner of cells at ⌊size / 2⌋; in half voxels all of it is whole-numbered.
     pub(super) fn place(&self, cell: [u8; 3], size: [u32; 3]) -> [i64; 3] {
-        let doubled =
-            [0, 1, 2].map(|axis| 2 * i64::from(cell[axis]) + 1 - 2 * i64::from(size[axis] / 2));
+        let doubled = [0, 1, 2].map(|axis| 2 * i64::from(cell[axis]) + 1 - 2 * i64::from(size[axis] / 2));
         let turned = self.rotate(doubled);
         [0, 1, 2].map(|axis| (turned[axis] - 1) / 2 + self.shift[axis])
     }
@@ -100,10 +93,7 @@ pub(super) fn instances(
     skeleton: &Skeleton,
 ) -> Result<Vec<Instance>, SceneError> {
     if data.scenes.is_empty() {
-        let only = Instance {
-            model: 0,
-            placement: Placement::IDENTITY,
-        };
+        let only = Instance { model: 0, placement: Placement::IDENTITY };
         return Ok(vec![only]);
     }
     let mut walk = Walk::new(path, data, skeleton)?;
@@ -137,10 +127,7 @@ impl<'a> Walk<'a> {
             path,
             data,
             index,
-            hidden_layers: layers
-                .filter(|(_, layer)| layer.hidden())
-                .map(|(&id, _)| id)
-                .collect(),
+            hidden_layers: layers.filter(|(_, layer)| layer.hidden()).map(|(&id, _)| id).collect(),
             visits: 0,
             stack: Vec::new(),
             found: Vec::new(),
@@ -153,17 +140,10 @@ impl<'a> Walk<'a> {
         let data = self.data;
         while let Some((node, placement, depth)) = self.stack.pop() {
             match &data.scenes[node] {
-                SceneNode::Transform {
-                    attributes,
-                    frames,
-                    child,
-                    layer_id,
-                } => {
+                SceneNode::Transform { attributes, frames, child, layer_id } => {
                     let hidden = attributes.get("_hidden").is_some_and(|flag| flag == "1");
                     if !hidden && !self.hidden_layers.contains(layer_id) {
-                        let local = frames
-                            .first()
-                            .map_or(Placement::IDENTITY, Placement::of_frame);
+                        let local = frames.first().map_or(Placement::IDENTITY, Placement::of_frame);
                         self.push_id(*child, placement.after(&local), depth + 1)?;
                     }
                 }
@@ -200,9 +180,7 @@ impl<'a> Walk<'a> {
 
     fn push(&mut self, node: usize, placement: Placement, depth: u32) -> Result<(), SceneError> {
         if depth > MAX_DEPTH {
-            return Err(self.damaged(format!(
-                "contains itself or is nested deeper than {MAX_DEPTH}"
-            )));
+            return Err(self.damaged(format!("contains itself or is nested deeper than {MAX_DEPTH}")));
         }
         self.visits += 1;
         if self.visits > MAX_VISITS {
@@ -255,10 +233,7 @@ mod tests {
     fn every_rotation_maps_a_model_onto_distinct_neighbouring_cells() {
         let size = [3, 2, 5];
         for rows in (0..128).filter_map(rows_of_byte) {
-            let placement = Placement {
-                rows,
-                shift: [7, -9, 2],
-            };
+            let placement = Placement { rows, shift: [7, -9, 2] };
             let mut cells = Vec::new();
             for x in 0..3 {
                 for y in 0..2 {
@@ -283,10 +258,7 @@ mod tests {
         let some: Vec<_> = (0..128)
             .filter_map(rows_of_byte)
             .zip(0..)
-            .map(|(rows, i)| Placement {
-                rows,
-                shift: [i, 2 * i - 9, 5 - i],
-            })
+            .map(|(rows, i)| Placement { rows, shift: [i, 2 * i - 9, 5 - i] })
             .collect();
         for a in &some {
             for b in &some {

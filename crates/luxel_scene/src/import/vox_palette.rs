@@ -11,10 +11,7 @@ use crate::material::{Material, Surface};
 /// Colours are sRGB. Clouds and blends are shown as matt. MagicaVoxel gives no unit for emission;
 /// here it is colour · `_emit` · 4^`_flux`, which looks alike at its "power" settings 0 to 4.
 pub(super) fn material(data: &DotVoxData, index: u8) -> Material {
-    let albedo = data
-        .palette
-        .get(usize::from(index))
-        .map_or(Vec3::ONE, linear);
+    let albedo = data.palette.get(usize::from(index)).map_or(Vec3::ONE, linear);
     let file_index = u32::from(index) + 1;
     let Some(entry) = data.materials.iter().find(|entry| entry.id == file_index) else {
         return Material::lambert(albedo);
@@ -29,9 +26,7 @@ pub(super) fn material(data: &DotVoxData, index: u8) -> Material {
         Some("_glass") => Material::dielectric(ior(number("_ri"), number("_ior"))),
         Some("_emit") => Material {
             surface: Surface::Lambert { albedo },
-            emission: albedo
-                * share("_emit")
-                * 4f32.powf(number("_flux").unwrap_or(0.0).clamp(0.0, 4.0)),
+            emission: albedo * share("_emit") * 4f32.powf(number("_flux").unwrap_or(0.0).clamp(0.0, 4.0)),
         },
         _ => Material::lambert(albedo),
     }
@@ -39,19 +34,13 @@ pub(super) fn material(data: &DotVoxData, index: u8) -> Material {
 
 /// `_ri` is an index of refraction, `_ior` one less.
 fn ior(ri: Option<f32>, ior: Option<f32>) -> f32 {
-    ri.or(ior.map(|ior| ior + 1.0))
-        .unwrap_or(1.5)
-        .clamp(1.0, 3.0)
+    ri.or(ior.map(|ior| ior + 1.0)).unwrap_or(1.5).clamp(1.0, 3.0)
 }
 
 fn linear(colour: &Color) -> Vec3 {
     let channel = |byte: u8| {
         let s = f32::from(byte) / 255.0;
-        if s <= 0.04045 {
-            s / 12.92
-        } else {
-            ((s + 0.055) / 1.055).powf(2.4)
-        }
+        if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }
     };
     Vec3::new(channel(colour.r), channel(colour.g), channel(colour.b))
 }

@@ -15,10 +15,7 @@ pub(super) struct Canvas {
 impl Canvas {
     pub(super) fn new(size: [u32; 3]) -> Self {
         let count = size.iter().map(|&edge| edge as usize).product();
-        Self {
-            size,
-            cells: vec![0; count],
-        }
+        Self { size, cells: vec![0; count] }
     }
 
     fn index(&self, cell: [i32; 3]) -> Option<usize> {
@@ -46,16 +43,9 @@ impl Canvas {
     /// The filled cells that have an empty one beside them: the rest cannot be seen.
     pub(super) fn shell(&self, palette: Vec<Material>) -> VoxelGrid {
         self.grid_of(palette, |[x, y, z]| {
-            [
-                [x - 1, y, z],
-                [x + 1, y, z],
-                [x, y - 1, z],
-                [x, y + 1, z],
-                [x, y, z - 1],
-                [x, y, z + 1],
-            ]
-            .into_iter()
-            .any(|neighbour| self.is_empty(neighbour))
+            [[x - 1, y, z], [x + 1, y, z], [x, y - 1, z], [x, y + 1, z], [x, y, z - 1], [x, y, z + 1]]
+                .into_iter()
+                .any(|neighbour| self.is_empty(neighbour))
         })
     }
 
@@ -69,15 +59,8 @@ impl Canvas {
                 ([x, y, z], content - 1)
             })
             .filter(|&(cell, _)| keep(cell.map(|c| c as i32)))
-            .map(|(cell, palette)| Voxel {
-                cell: cell.map(|c| c as u16),
-                palette,
-            })
+            .map(|(cell, palette)| Voxel { cell: cell.map(|c| c as u16), palette })
             .collect();
-        VoxelGrid {
-            size: UVec3::from_array(self.size),
-            voxels,
-            palette,
-        }
+        VoxelGrid { size: UVec3::from_array(self.size), voxels, palette }
     }
 }

@@ -77,8 +77,7 @@ impl Ground {
         let from_centre = (u * u + v * v).sqrt() / 0.40 + 0.28 * hills;
         let dome = 1.0 - from_centre;
         let peak = (1.0 - (u + 0.10).hypot(v + 0.08) / 0.22).max(0.0);
-        let land =
-            0.16 * dome + 0.05 * hills * dome.max(0.0) + 0.24 * peak * peak * (1.0 + 0.5 * hills);
+        let land = 0.16 * dome + 0.05 * hills * dome.max(0.0) + 0.24 * peak * peak * (1.0 + 0.5 * hills);
         self.sea_level + (land * self.size) as i32
     }
 
@@ -96,10 +95,7 @@ impl Ground {
     fn soil(&self, x: i32, y: i32, z: i32, height: i32) -> u8 {
         let above_sea = (y - self.sea_level) as f32 / self.size;
         let patch = self.detail.at(x as f32 / self.size, z as f32 / self.size);
-        let steep = (self.height(x + 1, z) - height)
-            .abs()
-            .max((self.height(x, z + 1) - height).abs())
-            > 2;
+        let steep = (self.height(x + 1, z) - height).abs().max((self.height(x, z + 1) - height).abs()) > 2;
         match above_sea {
             a if a < 0.016 + 0.006 * patch => SAND,
             a if a > 0.235 + 0.03 * patch => SNOW,
@@ -129,12 +125,7 @@ fn draw_tree(canvas: &mut Canvas, ground: &Ground, [x, z]: [i32; 2], seed: u32) 
         canvas.fill([x, height + y, z], TRUNK);
     }
     let leaves = if kind > 0.55 { YOUNG_LEAVES } else { LEAVES };
-    draw_crown(
-        canvas,
-        [x, height + trunk + 1, z],
-        2 + i32::from(kind > 0.4),
-        leaves,
-    );
+    draw_crown(canvas, [x, height + trunk + 1, z], 2 + i32::from(kind > 0.4), leaves);
 }
 
 /// A ball of leaves, flat below.
@@ -157,15 +148,10 @@ mod tests {
     fn every_soil_occurs_and_the_sea_reaches_the_border() {
         let island = island(96, 7);
         for entry in 0..island.palette.len() as u8 {
-            assert!(
-                island.voxels.iter().any(|voxel| voxel.palette == entry),
-                "{entry}"
-            );
+            assert!(island.voxels.iter().any(|voxel| voxel.palette == entry), "{entry}");
         }
-        let corner_is_sea = island
-            .voxels
-            .iter()
-            .any(|voxel| voxel.cell == [0, 6, 0] && voxel.palette == WATER);
+        let corner_is_sea =
+            island.voxels.iter().any(|voxel| voxel.cell == [0, 6, 0] && voxel.palette == WATER);
         assert!(corner_is_sea);
     }
 

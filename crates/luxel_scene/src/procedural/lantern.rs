@@ -17,10 +17,7 @@ const KNOB: u8 = 3;
 pub(super) fn lantern(size: u32) -> VoxelGrid {
     let palette = vec![
         Material::lambert(Vec3::new(0.16, 0.075, 0.035)),
-        Material {
-            emission: Vec3::new(3.4, 1.55, 0.42),
-            ..Material::lambert(Vec3::new(0.8, 0.7, 0.5))
-        },
+        Material { emission: Vec3::new(3.4, 1.55, 0.42), ..Material::lambert(Vec3::new(0.8, 0.7, 0.5)) },
         Material::lambert(Vec3::new(0.26, 0.045, 0.035)),
         Material::metal(Vec3::new(0.95, 0.70, 0.30), 0.15),
     ];
@@ -45,11 +42,7 @@ fn lantern_cell(edge: i32, roof_from: i32, [x, y, z]: [i32; 3]) -> Option<u8> {
     if y >= roof_from {
         let step = y - roof_from;
         let knob = step > edge / 2 && inset(x) >= (edge - 1) / 2 && inset(z) >= (edge - 1) / 2;
-        return if knob {
-            Some(KNOB)
-        } else {
-            (depth >= step).then_some(ROOF)
-        };
+        return if knob { Some(KNOB) } else { (depth >= step).then_some(ROOF) };
     }
     if y == 0 {
         return Some(WOOD);
@@ -104,10 +97,7 @@ mod tests {
         for size in 5..20 {
             let lantern = lantern(size);
             for entry in 0..4 {
-                assert!(
-                    lantern.voxels.iter().any(|v| v.palette == entry),
-                    "{size} {entry}"
-                );
+                assert!(lantern.voxels.iter().any(|v| v.palette == entry), "{size} {entry}");
             }
         }
     }

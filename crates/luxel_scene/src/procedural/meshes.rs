@@ -10,12 +10,7 @@ use crate::assets::TriangleMesh;
 /// The square [−½, ½]² of the XZ plane, facing +Y.
 pub(crate) fn quad() -> TriangleMesh {
     let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
-    let positions = vec![
-        corner(-0.5, -0.5),
-        corner(-0.5, 0.5),
-        corner(0.5, 0.5),
-        corner(0.5, -0.5),
-    ];
+    let positions = vec![corner(-0.5, -0.5), corner(-0.5, 0.5), corner(0.5, 0.5), corner(0.5, -0.5)];
     TriangleMesh::numbered(positions, vec![[0, 1, 2], [0, 2, 3]])
 }
 
@@ -28,18 +23,8 @@ pub(super) fn cube() -> TriangleMesh {
         })
         .collect();
     // Corners of each face, counter-clockwise from outside; a corner's bits are its x, y and z.
-    let faces = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
-    let triangles = faces
-        .into_iter()
-        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
-        .collect();
+    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     TriangleMesh::numbered(positions, triangles)
 }
 
@@ -55,12 +40,7 @@ pub(super) fn icosphere(subdivisions: u32) -> TriangleMesh {
 fn icosahedron() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let golden = (1.0 + 5f32.sqrt()) / 2.0;
     let mut positions = Vec::new();
-    for (a, b) in [
-        (-1.0, golden),
-        (1.0, golden),
-        (-1.0, -golden),
-        (1.0, -golden),
-    ] {
+    for (a, b) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
         positions.push(Vec3::new(a, b, 0.0).normalize());
         positions.push(Vec3::new(0.0, a, b).normalize());
         positions.push(Vec3::new(b, 0.0, a).normalize());
@@ -110,11 +90,7 @@ pub(super) fn torus_knot(p: u32, q: u32, tube: f32, segments: u32, sides: u32) -
     let point = |t: f64| {
         let (around, through) = (f64::from(p) * t, f64::from(q) * t);
         let radius = reach * (2.0 + through.cos()) / 3.0;
-        DVec3::new(
-            radius * around.cos(),
-            reach * through.sin() / 3.0,
-            radius * around.sin(),
-        )
+        DVec3::new(radius * around.cos(), reach * through.sin() / 3.0, radius * around.sin())
     };
     let mut positions = Vec::new();
     for segment in 0..segments {
@@ -124,9 +100,7 @@ pub(super) fn torus_knot(p: u32, q: u32, tube: f32, segments: u32, sides: u32) -
         let tangent = (point(t + step) - point(t - step)).normalize_or(DVec3::Z);
         // The torus's own normal as reference never runs along the knot, so rings do not twist.
         let ring_centre = DVec3::new(centre.x, 0.0, centre.z).normalize_or(DVec3::X) * reach / 1.5;
-        let normal = (centre - ring_centre)
-            .reject_from_normalized(tangent)
-            .normalize_or(DVec3::Y);
+        let normal = (centre - ring_centre).reject_from_normalized(tangent).normalize_or(DVec3::Y);
         let binormal = tangent.cross(normal);
         for side in 0..sides {
             let (sin, cos) = (TAU * f64::from(side) / f64::from(sides)).sin_cos();
@@ -174,40 +148,23 @@ mod tests {
                 *edges.entry((from, to)).or_insert(0) += 1;
             }
         }
-        edges
-            .iter()
-            .all(|(&(from, to), &n)| n == 1 && edges.contains_key(&(to, from)))
+        edges.iter().all(|(&(from, to), &n)| n == 1 && edges.contains_key(&(to, from)))
     }
 
     #[test]
     fn solids_are_closed_and_face_outwards() {
-        let knot = MeshSource::TorusKnot {
-            p: 2,
-            q: 3,
-            tube: 0.2,
-            segments: 96,
-            sides: 12,
-        };
+        let knot = MeshSource::TorusKnot { p: 2, q: 3, tube: 0.2, segments: 96, sides: 12 };
         for (source, expected) in [
             (MeshSource::Cube, 6.0),
-            (
-                MeshSource::Icosphere { subdivisions: 4 },
-                8.0 * std::f64::consts::PI,
-            ),
+            (MeshSource::Icosphere { subdivisions: 4 }, 8.0 * std::f64::consts::PI),
             // Length of the knot times the tube's section, roughly.
             (knot, 6.0 * 8.2 * std::f64::consts::PI * 0.04),
         ] {
             let mesh = crate::procedural::mesh(&source).unwrap();
             assert!(closed(&mesh), "{source:?}");
             let volume = volume6(&mesh);
-            assert!(
-                (volume / expected - 1.0).abs() < 0.2,
-                "{source:?} {volume} {expected}"
-            );
-            assert!(
-                mesh.positions.iter().all(|p| p.length() < 1.001),
-                "{source:?}"
-            );
+            assert!((volume / expected - 1.0).abs() < 0.2, "{source:?} {volume} {expected}");
+            assert!(mesh.positions.iter().all(|p| p.length() < 1.001), "{source:?}");
         }
     }
 
@@ -216,11 +173,7 @@ mod tests {
         for n in 0..4 {
             let mesh = icosphere(n);
             assert_eq!(mesh.triangles.len(), 20 * 4usize.pow(n));
-            assert!(
-                mesh.positions
-                    .iter()
-                    .all(|p| (p.length() - 1.0).abs() < 1e-6)
-            );
+            assert!(mesh.positions.iter().all(|p| (p.length() - 1.0).abs() < 1e-6));
         }
     }
 }

@@ -20,18 +20,10 @@ pub(crate) fn mesh(source: &MeshSource) -> Option<TriangleMesh> {
         MeshSource::Quad => meshes::quad(),
         MeshSource::Cube => meshes::cube(),
         MeshSource::Icosphere { subdivisions } => meshes::icosphere(subdivisions),
-        MeshSource::TorusKnot {
-            p,
-            q,
-            tube,
-            segments,
-            sides,
-        } => meshes::torus_knot(p, q, tube, segments, sides),
-        MeshSource::Terrain {
-            seed,
-            cells,
-            height,
-        } => terrain::terrain(seed, cells, height),
+        MeshSource::TorusKnot { p, q, tube, segments, sides } => {
+            meshes::torus_knot(p, q, tube, segments, sides)
+        }
+        MeshSource::Terrain { seed, cells, height } => terrain::terrain(seed, cells, height),
     })
 }
 

@@ -71,10 +71,9 @@ impl Scatter {
         let [kind, hue, tone, fuzz] = random([index, 0, self.seed, 2]).map(|x| x as f32);
         match kind {
             k if k < 0.6 => Material::lambert(colour(hue, 0.25 + 0.65 * tone)),
-            k if k < 0.85 => Material::metal(
-                Vec3::splat(0.75).lerp(colour(hue, 0.9), 0.5),
-                0.4 * fuzz * fuzz,
-            ),
+            k if k < 0.85 => {
+                Material::metal(Vec3::splat(0.75).lerp(colour(hue, 0.9), 0.5), 0.4 * fuzz * fuzz)
+            }
             _ => Material::dielectric(1.5),
         }
     }
@@ -98,10 +97,7 @@ struct Placed {
 
 impl Placed {
     fn new(width: f64) -> Self {
-        Self {
-            width,
-            boxes: HashMap::new(),
-        }
+        Self { width, boxes: HashMap::new() }
     }
 
     fn box_of(&self, centre: DVec3) -> IVec3 {

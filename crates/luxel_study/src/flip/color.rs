@@ -8,21 +8,9 @@ use crate::image::linear_from_srgb;
 
 /// XYZ from linear Rec.709 with the D65 white point.
 const XYZ_FROM_LINEAR: DMat3 = DMat3::from_cols(
-    DVec3::new(
-        10_135_552.0 / 24_577_794.0,
-        2_613_072.0 / 12_288_897.0,
-        1_425_312.0 / 73_733_382.0,
-    ),
-    DVec3::new(
-        8_788_810.0 / 24_577_794.0,
-        8_788_810.0 / 12_288_897.0,
-        8_788_810.0 / 73_733_382.0,
-    ),
-    DVec3::new(
-        4_435_075.0 / 24_577_794.0,
-        887_015.0 / 12_288_897.0,
-        70_074_185.0 / 73_733_382.0,
-    ),
+    DVec3::new(10_135_552.0 / 24_577_794.0, 2_613_072.0 / 12_288_897.0, 1_425_312.0 / 73_733_382.0),
+    DVec3::new(8_788_810.0 / 24_577_794.0, 8_788_810.0 / 12_288_897.0, 8_788_810.0 / 73_733_382.0),
+    DVec3::new(4_435_075.0 / 24_577_794.0, 887_015.0 / 12_288_897.0, 70_074_185.0 / 73_733_382.0),
 );
 
 fn white() -> DVec3 {
@@ -33,11 +21,7 @@ fn white() -> DVec3 {
 pub(super) fn opponent_from_srgb(encoded: [f64; 3]) -> [f64; 3] {
     let linear = DVec3::from_array(encoded.map(linear_from_srgb));
     let xyz = XYZ_FROM_LINEAR * linear / white();
-    [
-        116.0 * xyz.y - 16.0,
-        500.0 * (xyz.x - xyz.y),
-        200.0 * (xyz.y - xyz.z),
-    ]
+    [116.0 * xyz.y - 16.0, 500.0 * (xyz.x - xyz.y), 200.0 * (xyz.y - xyz.z)]
 }
 
 /// Linear Rec.709 of a colour in Y*CxCz; not clipped.
@@ -82,12 +66,7 @@ mod tests {
             (lab_from_linear([1.0; 3]), [100.0, 0.0, 0.0]),
             (lab_from_linear([0.0; 3]), [0.0; 3]),
         ] {
-            assert!(
-                got.iter()
-                    .zip(want)
-                    .all(|(got, want)| (got - want).abs() < 1e-9),
-                "{got:?}"
-            );
+            assert!(got.iter().zip(want).all(|(got, want)| (got - want).abs() < 1e-9), "{got:?}");
         }
     }
 

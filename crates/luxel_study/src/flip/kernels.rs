@@ -12,11 +12,7 @@ pub(super) struct Lobe {
 
 /// (amplitude, width in square degrees) of the gaussians that model contrast sensitivity (table 1), for the
 /// achromatic, red-green and blue-yellow channel.
-const SENSITIVITY: [&[(f64, f64)]; 3] = [
-    &[(1.0, 0.0047)],
-    &[(1.0, 0.0053)],
-    &[(34.1, 0.04), (13.5, 0.025)],
-];
+const SENSITIVITY: [&[(f64, f64)]; 3] = [&[(1.0, 0.0047)], &[(1.0, 0.0053)], &[(34.1, 0.04), (13.5, 0.025)]];
 /// The widest of them, which sets the radius of all filters.
 const WIDEST: f64 = 0.04;
 /// Width of the feature detectors in degrees (4.2.1).
@@ -30,14 +26,10 @@ pub(super) fn contrast_sensitivity(pixels_per_degree: f64) -> [Vec<Lobe>; 3] {
             .iter()
             .map(|&(amplitude, width)| {
                 let degrees = offsets(radius).map(|x| x / pixels_per_degree);
-                let mut profile: Vec<f64> =
-                    degrees.map(|x| (-PI * PI * x * x / width).exp()).collect();
+                let mut profile: Vec<f64> = degrees.map(|x| (-PI * PI * x * x / width).exp()).collect();
                 let sum: f64 = profile.iter().sum();
                 profile.iter_mut().for_each(|value| *value /= sum);
-                Lobe {
-                    profile,
-                    weight: amplitude * (PI / width).sqrt() * sum * sum,
-                }
+                Lobe { profile, weight: amplitude * (PI / width).sqrt() * sum * sum }
             })
             .collect();
         let total: f64 = lobes.iter().map(|lobe| lobe.weight).sum();
@@ -64,17 +56,9 @@ impl FeatureKernels {
         let radius = (3.0 * sigma).ceil() as i32;
         let profile = |factor: fn(f64) -> f64| -> Vec<f64> {
             let in_sigmas = offsets(radius).map(|x| x / sigma);
-            balanced(
-                in_sigmas
-                    .map(|x| factor(x) * (-0.5 * x * x).exp())
-                    .collect(),
-            )
+            balanced(in_sigmas.map(|x| factor(x) * (-0.5 * x * x).exp()).collect())
         };
-        Self {
-            smooth: profile(|_| 1.0),
-            edge: profile(|x| -x),
-            point: profile(|x| x * x - 1.0),
-        }
+        Self { smooth: profile(|_| 1.0), edge: profile(|x| -x), point: profile(|x| x * x - 1.0) }
     }
 }
 
@@ -99,10 +83,8 @@ mod tests {
     #[test]
     fn filters_keep_a_constant_and_detectors_ignore_it() {
         for lobes in contrast_sensitivity(67.0) {
-            let sum: f64 = lobes
-                .iter()
-                .map(|lobe| lobe.weight * lobe.profile.iter().sum::<f64>().powi(2))
-                .sum();
+            let sum: f64 =
+                lobes.iter().map(|lobe| lobe.weight * lobe.profile.iter().sum::<f64>().powi(2)).sum();
             assert!((sum - 1.0).abs() < 1e-12);
             assert_eq!(lobes[0].profile.len(), 21);
         }

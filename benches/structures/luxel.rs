@@ -1,0 +1,108 @@
+//! Luxel's own structures, as the CPU tracer goes through them.
+use glam::{UVec3, Vec3};
+use luxel_accel::{BvhOptions, RootCell, SphereOctree, Svo, SvoVoxel, build_mesh, build_svo};
+use luxel_cpu::{Exclusion, cloud, mesh, volume};
+use luxel_flat::{Counters, FlatScene, Heap, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SphereRecord};
+use luxel_geom::{Aabb, Ray, SlabRay};
+
+use crate::primitive::ClosestHit;
+
+/// A flat scene with one instance.
+struct Placed {
+    scene: FlatScene,
+    instance: Instance,
+    bounds: Aabb<f32>,
+}
+
+/// A mesh and its binary tree.
+pub(crate) struct LuxelBvh(Placed);
+
+impl LuxelBvh {
+    pub(crate) fn build(positions: &[Vec3], indices: &[[u32; 3]]) -> Self {
+        let ids: Vec<u32> = (0..indices.len() as u32).collect();
+        let built = build_mesh(positions, indices, &ids, &BvhOptions::default()).unwrap();
+        let instance = Instance {
+            kind: KIND_MESH,
+            node_count: built.nodes.len() as u32,
+            primitive_count: built.triangles.len() as u32,
+            ..Instance::default()
+        };
+        let scene = FlatScene {
+            bvh_nodes: Heap::from_records(built.nodes, 1),
+            triangles: Heap::from_records(built.triangles, 1),
+            ..FlatScene::default()
+        };
+        Self(Placed { scene, instance, bounds: built.bounds })
+    }
+
+    pub(crate) fn bounds(&self) -> Aabb<f32> {
+        self.0.bounds
+    }
+}
+
+impl ClosestHit for LuxelBvh {
+    fn closest(&self, ray: &Ray<f32>) -> Option<f32> {
+        let Placed { scene, instance, .. } = &self.0;
+        let mut counters = Counters::default();
+        mesh::intersect(scene, instance, &SlabRay::new(ray), &Exclusion::NOTHING, &mut counters)
+            .map(|hit| hit.t)
+    }
+}
+
+/// Spheres and their loose octree.
+pub(crate) struct LuxelOctree(Placed);
+
+impl LuxelOctree {
+    pub(crate) fn build(spheres: &[SphereRecord]) -> Self {
+        let root = RootCell { center: Vec3::ZERO, half_extent: 1.0 };
+        let in_slots: Vec<(u32, SphereRecord)> = (0..).zip(spheres.iter().copied()).collect();
+        let octree = SphereOctree::build(root, &in_slots, 1).unwrap();
+        let node_count = octree.nodes().len() as u32;
+        let instance = Instance { kind: KIND_SPHERES, node_count, ..Instance::default() };
+        let scene = FlatScene {
+            octree_nodes: octree.nodes().clone(),
+            spheres: octree.spheres().clone(),
+            ..FlatScene::default()
+        };
+        Self(Placed { scene, instance, bounds: octree.bounds() })
+    }
+
+    pub(crate) fn bounds(&self) -> Aabb<f32> {
+        self.0.bounds
+    }
+}
+
+impl ClosestHit for LuxelOctree {
+    fn closest(&self, ray: &Ray<f32>) -> Option<f32> {
+        let Placed { scene, instance, .. } = &self.0;
+        let mut counters = Counters::default();
+        cloud::intersect(scene, instance, &SlabRay::new(ray), &Exclusion::NOTHING, &mut counters)
+            .map(|hit| hit.t)
+    }
+}
+
+/// A voxel volume and its sparse octree.
+pub(crate) struct LuxelSvo(Placed);
+
+impl LuxelSvo {
+    pub(crate) fn build(voxels: &[SvoVoxel], size: UVec3) -> Self {
+        let Svo { nodes, levels, bounds } = build_svo(voxels, size).unwrap();
+        let node_count = nodes.len() as u32;
+        let instance = Instance { kind: KIND_VOXELS, node_count, levels, ..Instance::default() };
+        let scene = FlatScene { svo_nodes: Heap::from_records(nodes, 1), ..FlatScene::default() };
+        Self(Placed { scene, instance, bounds })
+    }
+
+    pub(crate) fn bounds(&self) -> Aabb<f32> {
+        self.0.bounds
+    }
+}
+
+impl ClosestHit for LuxelSvo {
+    fn closest(&self, ray: &Ray<f32>) -> Option<f32> {
+        let Placed { scene, instance, .. } = &self.0;
+        let mut counters = Counters::default();
+        volume::intersect(scene, instance, &SlabRay::new(ray), &Exclusion::NOTHING, &mut counters)
+            .map(|hit| hit.t)
+    }
+}

@@ -1,0 +1,136 @@
+//! Building and closest hits of the three structures, beside the crates `obvhs` and `bvh` in the same run.
+//!
+//! Every structure tests primitives with the same functions of `luxel_geom`, so that the rates compare trees and
+//! traversals, not triangle tests; and before anything is measured all of them must find the same hits. Closest hits
+//! run on one thread, builds on all.
+#![allow(clippy::unwrap_used)]
+mod bvh_crate;
+mod inputs;
+mod luxel;
+mod obvhs_crate;
+mod primitive;
+
+use std::time::Duration;
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput};
+use luxel_flat::SphereRecord;
+use luxel_geom::Ray;
+
+use bvh_crate::BvhCrate;
+use inputs::Model;
+use luxel::{LuxelBvh, LuxelOctree, LuxelSvo};
+use obvhs_crate::{ObvhsBinary, ObvhsWide};
+use primitive::{ClosestHit, Primitive, Vertices};
+
+fn main() {
+    let mut criterion = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1))
+        .configure_from_args();
+    for model in inputs::models() {
+        bench_mesh(&mut criterion, &model);
+    }
+    bench_spheres(&mut criterion, &inputs::sphere_cloud());
+    bench_voxels(&mut criterion);
+    criterion.final_summary();
+}
+
+fn bench_mesh(criterion: &mut Criterion, model: &Model) {
+    let triangles: Vec<Vertices> = model.triangles();
+    let mut build = group(criterion, &format!("mesh build, {}", model.name), triangles.len());
+    build.bench_function("luxel", |b| b.iter(|| LuxelBvh::build(&model.positions, &model.indices)));
+    bench_other_builds(&mut build, &triangles);
+    build.finish();
+
+    let luxel = LuxelBvh::build(&model.positions, &model.indices);
+    for (kind, rays) in inputs::rays(luxel.bounds()) {
+        bench_hits(
+            criterion,
+            &format!("mesh closest hit, {}, {kind}", model.name),
+            &rays,
+            &luxel,
+            &triangles,
+        );
+    }
+}
+
+fn bench_spheres(criterion: &mut Criterion, spheres: &[SphereRecord]) {
+    let mut build = group(criterion, "sphere build", spheres.len());
+    build.bench_function("luxel", |b| b.iter(|| LuxelOctree::build(spheres)));
+    bench_other_builds(&mut build, spheres);
+    build.finish();
+
+    let luxel = LuxelOctree::build(spheres);
+    for (kind, rays) in inputs::rays(luxel.bounds()) {
+        bench_hits(criterion, &format!("sphere closest hit, {kind}"), &rays, &luxel, spheres);
+    }
+}
+
+/// Neither crate has a voxel structure: these rates stand alone.
+fn bench_voxels(criterion: &mut Criterion) {
+    let (voxels, size) = inputs::island();
+    let mut build = group(criterion, "voxel build", voxels.len());
+    build.bench_function("luxel", |b| b.iter(|| LuxelSvo::build(&voxels, size)));
+    build.finish();
+
+    let luxel = LuxelSvo::build(&voxels, size);
+    for (kind, rays) in inputs::rays(luxel.bounds()) {
+        let mut hits = group(criterion, &format!("voxel closest hit, {kind}"), rays.len());
+        bench_closest(&mut hits, "luxel", &luxel, &rays);
+        hits.finish();
+    }
+}
+
+fn group<'a>(criterion: &'a mut Criterion, name: &str, elements: usize) -> BenchmarkGroup<'a, WallTime> {
+    let mut group = criterion.benchmark_group(name);
+    group.throughput(Throughput::Elements(elements as u64));
+    group
+}
+
+fn bench_other_builds<P: Primitive>(group: &mut BenchmarkGroup<'_, WallTime>, primitives: &[P]) {
+    group.bench_function("obvhs", |b| b.iter(|| ObvhsBinary::build(primitives)));
+    group.bench_function("obvhs wide", |b| b.iter(|| ObvhsWide::build(primitives)));
+    group.bench_function("bvh", |b| b.iter(|| BvhCrate::build(primitives)));
+}
+
+fn bench_hits<P: Primitive>(
+    criterion: &mut Criterion,
+    name: &str,
+    rays: &[Ray<f32>],
+    luxel: &dyn ClosestHit,
+    primitives: &[P],
+) {
+    let (binary, wide) = (ObvhsBinary::build(primitives), ObvhsWide::build(primitives));
+    let crate_bvh = BvhCrate::build(primitives);
+    let others: [(&str, &dyn ClosestHit); 3] =
+        [("obvhs", &binary), ("obvhs wide", &wide), ("bvh", &crate_bvh)];
+    let mut hits = group(criterion, name, rays.len());
+    bench_closest(&mut hits, "luxel", luxel, rays);
+    for (other, structure) in others {
+        assert_same_hits(name, other, luxel, structure, rays);
+        bench_closest(&mut hits, other, structure, rays);
+    }
+    hits.finish();
+}
+
+fn bench_closest(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    name: &str,
+    structure: &dyn ClosestHit,
+    rays: &[Ray<f32>],
+) {
+    let count_hits = || rays.iter().filter(|ray| structure.closest(ray).is_some()).count();
+    group.bench_function(BenchmarkId::from_parameter(name), |b| b.iter(count_hits));
+}
+
+/// All but the odd ray along an edge: the crates' boxes are not padded.
+fn assert_same_hits(name: &str, other: &str, a: &dyn ClosestHit, b: &dyn ClosestHit, rays: &[Ray<f32>]) {
+    let differs = |ray: &&Ray<f32>| match (a.closest(ray), b.closest(ray)) {
+        (Some(t), Some(u)) => (t - u).abs() > 1e-4 * t,
+        (t, u) => t.is_some() != u.is_some(),
+    };
+    let different = rays.iter().filter(differs).count();
+    assert!(different * 1000 <= rays.len(), "{name}: {different} hits of {other} differ");
+}

@@ -1,0 +1,62 @@
+//! How far a WGSL function may be from its Rust twin, and why: the one table of these bounds.
+//!
+//! Unit: u = 2⁻²⁴, the unit round-off. What WGSL allows (§15.7.4): +, −, × rounded to either neighbour (2u), `/` 2.5 ulp
+//! (5u), `inverseSqrt` 2 ulp, `sqrt` as 1 / inverseSqrt (10u), fusing and reordering. Rust rounds each operation
+//! once (1u). `forward` is a share of the result's own scale. Where the result is ill-conditioned (a tangent ray, a
+//! grazing triangle, the critical angle), the result must be that of inputs which differ by `backward` u each.
+
+/// The bound of a function.
+pub(crate) struct Bound {
+    pub(crate) function: &'static str,
+    /// Largest error in u of the result's scale.
+    pub(crate) forward: f32,
+    /// Largest relative change in u of inputs that explains a larger error.
+    pub(crate) backward: f32,
+    #[expect(dead_code, reason = "for the reader of the table")]
+    because: &'static str,
+}
+
+const fn bound(function: &'static str, forward: f32, backward: f32, because: &'static str) -> Bound {
+    Bound { function, forward, backward, because }
+}
+
+/// In the order of the cases.
+pub(crate) const BOUNDS: [Bound; 12] = [
+    bound("box_interval", 16.0, 4.0, "difference 2u, reciprocal 5u, product 2u, pad 2u; Rust 4u"),
+    bound(
+        "intersect_sphere",
+        64.0,
+        16.0,
+        "two lengths, a root and two quotients: 40u and Rust 16u; tangents",
+    ),
+    bound(
+        "intersect_triangle",
+        64.0,
+        16.0,
+        "shear 7u, edges 6u, three quotients 10u, sums 12u; grazing rays",
+    ),
+    bound("intersect_voxel", 16.0, 4.0, "as box_interval; on edges the face may differ"),
+    bound(
+        "to_world",
+        32.0,
+        0.0,
+        "a quotient and three products and sums per component, in parts of the length",
+    ),
+    bound(
+        "fresnel_dielectric",
+        64.0,
+        8.0,
+        "a root and three quotients: 30u and Rust 10u, doubled by the squares",
+    ),
+    bound("concentric_disk", 8192.0, 4.0, "WGSL's sin and cos: absolute 2^-11"),
+    bound("uniform_sphere", 8192.0, 4.0, "WGSL's sin and cos: absolute 2^-11"),
+    bound("offset_origin", 16.0, 0.0, "a scalar product, a product, a sum, a neighbour: 10u and Rust 6u"),
+    bound("transform_point", 24.0, 0.0, "four products and three sums, in parts of the sum of their sizes"),
+    bound("transform_point_error", 32.0, 0.0, "all terms are positive: eight operations, gamma itself 9u"),
+    bound(
+        "tone_map",
+        512.0,
+        0.0,
+        "log2 and exp2: 2^-21 each, through slopes of up to 13; a code value is 65,536u",
+    ),
+];

@@ -1,0 +1,82 @@
+//! Parity of twin kernels: each WGSL function is run over 2²⁰ hard inputs and compared with its Rust twin
+//! (robustness.md G01, G02). Integers must be equal; floats must be within the bounds of [`bounds::BOUNDS`].
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+mod bounds;
+mod cases;
+mod device;
+mod film;
+mod inputs;
+mod integers;
+mod judge;
+mod watertight;
+
+use luxel_gpu::testing::gpu_or_fail;
+use luxel_testkit::Random;
+
+use bounds::BOUNDS;
+use cases::CASES;
+use judge::{Call, Tally};
+
+/// Calls of each function.
+const CALLS: usize = 1 << 20;
+/// Largest share of calls whose error only other inputs explain.
+const MAX_EXPLAINED: f64 = 0.02;
+
+#[test]
+fn floats_are_within_their_bounds() {
+    let Some(gpu) = gpu_or_fail() else { return };
+    for case in &CASES {
+        let calls = case.calls(&gpu, CALLS);
+        let tally = Tally::of(case, &calls);
+        println!("{:22} {tally}", case.function);
+        assert!(
+            tally.hits > CALLS / 50,
+            "{}: only {} inputs get to the end of it",
+            case.function,
+            tally.hits
+        );
+        assert!(tally.wrong.is_none(), "{}: {:#?}", case.function, tally.wrong);
+        let explained = tally.explained as f64 / CALLS as f64;
+        assert!(
+            explained <= MAX_EXPLAINED,
+            "{}: {explained} of all calls are ill-conditioned",
+            case.function
+        );
+    }
+}
+
+#[test]
+fn results_that_are_off_are_told() {
+    let Some(gpu) = gpu_or_fail() else { return };
+    for case in &CASES {
+        let mut calls = case.calls(&gpu, 1 << 12);
+        let off = 1.0 + 8.0 * case.bound().forward * judge::U;
+        for Call { found, .. } in &mut calls {
+            found.values = found.values.map(|v| v * off);
+        }
+        assert!(
+            Tally::of(case, &calls).wrong.is_some(),
+            "{}: values that are off by {off} pass",
+            case.function
+        );
+        let mut calls = case.calls(&gpu, 1 << 12);
+        Random::new(5).shuffle(&mut calls[..]);
+        let founds: Vec<_> = calls.iter().map(|call| call.found).collect();
+        for (call, found) in calls.iter_mut().zip(founds.into_iter().cycle().skip(1)) {
+            call.found = found;
+        }
+        assert!(
+            Tally::of(case, &calls).wrong.is_some(),
+            "{}: the results of other inputs pass",
+            case.function
+        );
+    }
+}
+
+#[test]
+fn every_bound_belongs_to_a_case() {
+    assert_eq!(
+        BOUNDS.map(|bound| bound.function).to_vec(),
+        CASES.each_ref().map(|case| case.function).to_vec()
+    );
+}
