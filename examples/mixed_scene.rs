@@ -1,6 +1,7 @@
 //! Builds a scene in code — a sphere, a mesh and a voxel volume side by side — and renders it.
 //!
 //! `cargo run --release --example mixed_scene -- [--quick] [--out DIR]`
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example talks to a terminal")]
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 

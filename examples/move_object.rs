@@ -3,6 +3,7 @@
 //! `cargo run --release --example move_object -- [--quick] [--out DIR]`
 //!
 //! Writes the first and the last frame as PNG and prints a line per frame.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example talks to a terminal")]
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
@@ -29,7 +30,7 @@ fn main() -> anyhow::Result<()> {
 
     for frame in 0..FRAMES {
         let (name, entity) = if frame % 2 == 0 { ("mesh", knot) } else { ("sphere", ball) };
-        let before = engine.world.resource::<BakeCounters>().clone();
+        let before = *engine.world.resource::<BakeCounters>();
         let angle = f64::from(frame) / f64::from(FRAMES) * std::f64::consts::TAU;
         if let Some(mut transform) = engine.world.get_mut::<Transform>(entity) {
             transform.translation += DVec3::new(angle.cos(), 0.0, angle.sin()) * 0.02;

@@ -1,6 +1,7 @@
 //! Renders a scene file without a window, on the CPU or the GPU, and writes a PNG.
 //!
 //! `cargo run --release --example render_headless -- [SCENE] [--gpu] [--quick] [--out DIR]`
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example talks to a terminal")]
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 

@@ -128,6 +128,7 @@ impl<T: Copy + Default> Heap<T> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::single_range_in_vec_init, reason = "the ranges themselves are compared")]
     use super::*;
 
     #[test]
