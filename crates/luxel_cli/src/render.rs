@@ -118,14 +118,17 @@ fn tell_notices(rendered: &Rendered, summary: &RenderSummary, progress: &Progres
 fn last_line(summary: &RenderSummary, is_trusted: bool, outputs: &[PathBuf]) -> String {
     let files = outputs.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
     let doubt = if is_trusted { "" } else { ", too few samples to be sure" };
+    let error = match summary.error {
+        Some(error) => format!("error {:.1} % (estimated{doubt})", 100.0 * error),
+        None => "error unknown from one sample".to_owned(),
+    };
     format!(
-        "wrote {files}: {}x{}, {} spp in {:.1} s, {} rays/s, error {:.1} % (estimated{doubt}), {} ({}) because {}",
+        "wrote {files}: {}x{}, {} spp in {:.1} s, {} rays/s, {error}, {} ({}) because {}",
         summary.width,
         summary.height,
         summary.spp,
         summary.seconds.trace,
         reply::per_second(summary.rays_per_sec),
-        100.0 * summary.error,
         summary.backend,
         summary.device,
         summary.because

@@ -46,12 +46,12 @@ pub struct RenderSummary {
     pub spp: u32,
     /// Why the render stopped: `samples`, `seconds`, `error` or `interrupted`.
     pub stopped_by: &'static str,
-    /// Relative error of the picture, estimated from its own samples.
-    pub error: f64,
+    /// Relative error of the picture, estimated from its own samples; `None` for a single sample, which tells nothing.
+    pub error: Option<f64>,
     /// Median and 95th percentile of the pixels' errors.
-    pub error_p50: f64,
+    pub error_p50: Option<f64>,
     /// See `error_p50`.
-    pub error_p95: f64,
+    pub error_p95: Option<f64>,
     /// `cpu` or `gpu`.
     pub backend: &'static str,
     /// Processor or adapter.
@@ -81,6 +81,7 @@ impl Rendered {
     /// When the scene cannot be hashed.
     pub fn summary(&self, engine: &Engine) -> Result<RenderSummary, EngineError> {
         let rays = self.stats.counters.rays() as f64;
+        let known = self.samples > 1;
         Ok(RenderSummary {
             scene: engine.path().display().to_string(),
             scene_hash: engine.scene_hash()?,
@@ -88,9 +89,9 @@ impl Rendered {
             height: self.film.height,
             spp: self.samples,
             stopped_by: self.stopped_by(),
-            error: self.error.relative,
-            error_p50: self.error.p50,
-            error_p95: self.error.p95,
+            error: known.then_some(self.error.relative),
+            error_p50: known.then_some(self.error.p50),
+            error_p95: known.then_some(self.error.p95),
             backend: self.facts.backend.name(),
             device: self.facts.device.clone(),
             driver: self.facts.driver.clone(),
