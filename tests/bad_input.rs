@@ -49,7 +49,9 @@ fn files_that_are_not_there_or_not_files() {
     refuses(None, &render("missing.ron"), "missing.ron");
     refuses(None, &render("missing.obj"), "missing.obj");
     refuses(None, &render("a_folder.png"), "a_folder.png");
-    refuses(None, &render("."), ".");
+    for folder in [".", "..", "/"] {
+        refuses(None, &render(folder), &format!("{folder}: is not a regular file"));
+    }
     refuses(None, &["info", "missing.ron", "--json"], "missing.ron");
     refuses(None, &["graph", "missing.vox", "--json"], "missing.vox");
     refuses(Some(("scene.jpg", b"x")), &render("scene.jpg"), "scene.jpg");
@@ -84,7 +86,7 @@ fn scenes_that_make_no_sense() {
         (scene("1", "colour: 3"), "colour"),
         ("(version: 1, entities: [(id: 1, sphere: (radius: 1))])".to_owned(), "camera"),
         ("(version: 999, entities: [])".to_owned(), "version 999"),
-        (scene("1", "mesh: 5"), "at most once together"),
+        (scene("1", "mesh: 5"), "exclude one another, but 2 are given"),
     ];
     for (text, says) in cases {
         refuses(Some(("scene.ron", text.as_bytes())), &render("scene.ron"), says);
@@ -131,16 +133,22 @@ fn an_extra_output_that_cannot_be_written_stops_before_the_render() {
 fn options_out_of_range() {
     let scene = scene("1", "");
     let input = Some(("scene.ron", scene.as_bytes()));
-    let cases: [(&[&str], &str); 14] = [
+    let cases: [(&[&str], &str); 20] = [
         (&["--size", "3"], "WIDTHxHEIGHT"),
         (&["--size", "0x4"], "WIDTHxHEIGHT"),
         (&["--size", "99999x4"], "99999x4"),
         (&["--spp", "0"], "--spp"),
         (&["--spp", "many"], "--spp"),
-        (&["--time", "-1"], "-1"),
+        (&["--size", "-3x4"], "WIDTHxHEIGHT"),
+        (&["--spp", "-1"], "-1 is not in 1.."),
+        (&["--time", "-1"], "expected a positive number"),
         (&["--time", "NaN"], "--time"),
         (&["--error", "0%"], "--error"),
-        (&["--seed", "-3"], "-3"),
+        (&["--error", "-1"], "expected a positive percentage"),
+        (&["--error", "-1%"], "expected a positive percentage"),
+        (&["--seed", "-3"], "-3 is not in 0..=4294967295"),
+        (&["--max-depth", "65536"], "65536 is not in 0..=65535"),
+        (&["--max-depth", "-1"], "-1 is not in 0..=65535"),
         (&["--camera", "nobody"], "no camera is named 'nobody'"),
         (&["--aov", "depth,colour"], "colour"),
         (&["--view", "xray"], "xray"),
@@ -184,6 +192,9 @@ fn pictures_that_cannot_be_compared() {
     }
     refuses(input, &["compare", "a.png", "a_folder.png"], "a_folder.png");
     refuses(input, &["compare", "a.png", "a.png", "--max-flip", "NaN"], "--max-flip");
+    for limit in ["--max-rmse", "--max-relmse", "--min-psnr", "--min-ssim", "--max-flip"] {
+        refuses(input, &["compare", "a.png", "a.png", limit, "-1"], "expected a number that is not negative");
+    }
 }
 
 #[test]

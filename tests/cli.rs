@@ -53,9 +53,10 @@ fn check_render_on(backend: &str) {
     assert_eq!((&answer["width"], &answer["height"], &answer["spp"]), (&32.into(), &18.into(), &2.into()));
     assert_eq!((&answer["backend"], &answer["stopped_by"]), (&backend.into(), &"samples".into()));
     assert_eq!(answer["outputs"], serde_json::json!(["out.png"]));
-    for stage in ["load", "bake", "compile", "trace"] {
+    for stage in ["load", "bake", "compile", "trace", "write"] {
         assert!(answer["seconds"][stage].as_f64().unwrap() >= 0.0, "{stage}");
     }
+    assert!(answer["seconds"]["write"].as_f64().unwrap() > 0.0, "writing took no time");
     let passes = answer["passes"].as_array().unwrap();
     assert!(!passes.is_empty() && passes.iter().all(|pass| pass["ms"].is_f64() && pass["runs"].is_u64()));
     assert!(answer["rays_per_sec"].as_f64().unwrap() > 0.0);
@@ -134,6 +135,29 @@ fn every_view_and_every_curve_makes_a_picture() {
             image::open(folder.path().join("out.png")).unwrap();
         }
     }
+}
+
+#[test]
+fn options_without_effect_are_noted_and_stdout_stays_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let noted = |options: &str| {
+        let mut command = luxel(folder.path());
+        command.arg("render").arg(asset("one_of_each.ron")).args(SMALL);
+        let outcome = run(command.args(["--backend", "cpu", "--json"]).args(options.split(' ')));
+        json(&outcome.stdout);
+        outcome.stderr
+    };
+    assert_eq!(
+        noted("-o a.exr --tone-map agx --exposure 1"),
+        "note: --tone-map has no effect on a.exr: an EXR holds linear light\n\
+         note: --exposure has no effect on a.exr: an EXR holds linear light \
+         (only the error estimate takes the exposure in)\n"
+    );
+    assert_eq!(
+        noted("-o a.png --exr-precision half"),
+        "note: --exr-precision has no effect on a.png: it is for an EXR\n"
+    );
+    assert_eq!(noted("-o a.png --tone-map agx --exposure 1 --aov ids"), "");
 }
 
 #[test]

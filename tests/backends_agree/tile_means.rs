@@ -15,7 +15,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use crate::asset::asset;
 use crate::traced::trace;
 
-const SIZE: [u32; 2] = [96, 64];
+const SIZE: [u32; 2] = [128, 96];
 const TILE: usize = 32;
 const BATCHES: u32 = 32;
 const BATCH_SAMPLES: u32 = 8;

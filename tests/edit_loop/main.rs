@@ -1,6 +1,6 @@
 //! E01: ten thousand random edits through the ECS, a bake after each (robustness.md).
 //!
-//! After every edit the counters of the bake must say that exactly what changed was rebuilt. Every thousand edits all
+//! After every edit the counters of the bake must say that exactly what changed was rebuilt. Every hundred edits all
 //! structures are checked by the rooms that built them, and rays by brute force. At the end 100,000 rays must see the
 //! same, bit for bit, in the scene as edited, by brute force, in a fresh bake, and in the world saved and loaded; and
 //! the GPU must see the same ids, ties apart, each of which is explained in f64 (G03).

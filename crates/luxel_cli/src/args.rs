@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use luxel_engine::output::Precision;
-use luxel_engine::{AovKind, BackendChoice, ToneMap, View};
+use luxel_engine::{AovKind, BackendChoice, MAX_DEPTH, ToneMap, View};
 
 use crate::values;
 
@@ -82,7 +82,7 @@ pub(crate) struct RenderArgs {
     pub(crate) output: Option<PathBuf>,
 
     /// Width and height in pixels [default: the scene's]
-    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    #[arg(long, value_name = "WxH", value_parser = values::size, allow_hyphen_values = true)]
     pub(crate) size: Option<(u32, u32)>,
 
     /// Where to trace; auto takes a hardware GPU if there is one, else the CPU
@@ -92,23 +92,24 @@ pub(crate) struct RenderArgs {
     pub(crate) backend: BackendChoice,
 
     /// Stop at this many samples per pixel
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
     pub(crate) spp: Option<u32>,
 
-    /// Stop after this many seconds of tracing
-    #[arg(long, value_name = "SECS", value_parser = values::positive)]
+    /// Stop after this many seconds of tracing (every pixel gets at least one sample, however short the time)
+    #[arg(long, value_name = "SECS", value_parser = values::positive, allow_negative_numbers = true)]
     pub(crate) time: Option<f64>,
 
     /// Stop when the estimated relative error of the picture is this small, such as 2%
-    #[arg(long, value_name = "PERCENT", value_parser = values::percent)]
+    #[arg(long, value_name = "PERCENT", value_parser = values::percent, allow_hyphen_values = true)]
     pub(crate) error: Option<f64>,
 
     /// Seed of the random numbers; equal seeds give equal pictures [default: the scene's]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) seed: Option<u32>,
 
-    /// How often light may scatter after the first hit [default: the scene's]
-    #[arg(long, value_name = "N")]
+    /// How often light may scatter after the first hit, 0 to 65535 [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(MAX_DEPTH)),
+        allow_negative_numbers = true)]
     pub(crate) max_depth: Option<u32>,
 
     /// Name of the camera to look through [default: the scene's]
@@ -137,11 +138,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "STOPS", value_parser = values::finite, allow_negative_numbers = true)]
     pub(crate) exposure: Option<f32>,
 
-    /// How an EXR keeps colours
-    #[arg(long, value_name = "BITS", default_value = "half", value_parser = values::named(vec![
+    /// How an EXR keeps colours [default: half]
+    #[arg(long, value_name = "BITS", value_parser = values::named(vec![
         ("half", Precision::Half), ("float", Precision::Float),
     ]))]
-    pub(crate) exr_precision: Precision,
+    pub(crate) exr_precision: Option<Precision>,
 
     /// Print one JSON object (times, rays per second, counters, files) instead of a line
     #[arg(long)]
@@ -187,23 +188,23 @@ pub(crate) struct CompareArgs {
     pub(crate) b: PathBuf,
 
     /// Largest root mean square error of display values, 0 to 1
-    #[arg(long, value_name = "X", value_parser = values::limit)]
+    #[arg(long, value_name = "X", value_parser = values::limit, allow_negative_numbers = true)]
     pub(crate) max_rmse: Option<f64>,
 
     /// Largest relative mean square error of linear values (EXR only)
-    #[arg(long, value_name = "X", value_parser = values::limit)]
+    #[arg(long, value_name = "X", value_parser = values::limit, allow_negative_numbers = true)]
     pub(crate) max_relmse: Option<f64>,
 
     /// Smallest peak signal-to-noise ratio, decibels
-    #[arg(long, value_name = "X", value_parser = values::limit)]
+    #[arg(long, value_name = "X", value_parser = values::limit, allow_negative_numbers = true)]
     pub(crate) min_psnr: Option<f64>,
 
     /// Smallest structural similarity, 1 when equal
-    #[arg(long, value_name = "X", value_parser = values::limit)]
+    #[arg(long, value_name = "X", value_parser = values::limit, allow_negative_numbers = true)]
     pub(crate) min_ssim: Option<f64>,
 
     /// Largest mean FLIP difference, 0 when equal
-    #[arg(long, value_name = "X", value_parser = values::limit)]
+    #[arg(long, value_name = "X", value_parser = values::limit, allow_negative_numbers = true)]
     pub(crate) max_flip: Option<f64>,
 
     /// Print one JSON object

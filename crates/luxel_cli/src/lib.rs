@@ -11,6 +11,7 @@ mod compare;
 mod doctor;
 mod error;
 mod graph;
+mod ignored;
 mod info;
 mod interrupt;
 mod progress;

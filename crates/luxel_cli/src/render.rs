@@ -1,6 +1,7 @@
 //! `luxel render`: a scene or model to a picture, with its first-hit outputs.
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use luxel_engine::output::Precision;
 use luxel_engine::{
@@ -10,6 +11,7 @@ use serde::Serialize;
 
 use crate::args::RenderArgs;
 use crate::error::{CliError, one_line};
+use crate::ignored::ignored;
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
 use crate::reply;
@@ -30,16 +32,19 @@ pub(crate) fn render(args: &RenderArgs) -> Result<ExitCode, CliError> {
         output: args.output.clone().unwrap_or_else(|| default_output(&args.file)),
         aovs: each_once(&args.aov),
         view: args.view,
-        precision: args.exr_precision,
+        precision: args.exr_precision.unwrap_or_default(),
     };
-    run(&args.file, job(args), &targets, args.json)
+    if args.output.is_some() {
+        targets.check()?;
+    }
+    run(&args.file, job(args), &targets, &ignored(args, &targets.output), args.json)
 }
 
 /// Renders a job to one PNG and says so.
 pub(crate) fn to_picture(scene: &Path, job: RenderJob, output: &Path) -> Result<ExitCode, CliError> {
     let output = output.to_owned();
     let targets = Targets { output, aovs: Vec::new(), view: View::PathTraced, precision: Precision::Half };
-    run(scene, job, &targets, false)
+    run(scene, job, &targets, &[], false)
 }
 
 fn job(args: &RenderArgs) -> RenderJob {
@@ -72,17 +77,29 @@ fn default_output(scene: &Path) -> PathBuf {
     name.into()
 }
 
-fn run(scene: &Path, job: RenderJob, targets: &Targets, json: bool) -> Result<ExitCode, CliError> {
-    targets.check()?;
+/// Renders, writes and answers; `notes` are told once the scene is known to make sense.
+fn run(
+    scene: &Path,
+    job: RenderJob,
+    targets: &Targets,
+    notes: &[String],
+    json: bool,
+) -> Result<ExitCode, CliError> {
     let interrupt = Interrupt::listen()?;
     let progress = ProgressLine::new(scene);
     progress.stage("loading");
     let mut engine = Engine::load(scene)?;
+    // After loading, because the output may be named after a scene that does not exist.
+    targets.check()?;
+    notes.iter().for_each(|note| progress.note(&one_line(note)));
     progress.stage("building");
     let rendered = engine.render(&job, &mut |event| watch(event, &progress, &interrupt))?;
     progress.stage("writing");
+    let start = Instant::now();
     let outputs = targets.write(&rendered, &engine)?;
-    let summary = rendered.summary(&engine)?;
+    let write_secs = start.elapsed().as_secs_f64();
+    let mut summary = rendered.summary(&engine)?;
+    summary.seconds.write = write_secs;
     tell_notices(&rendered, &summary, &progress);
     drop(progress);
     if json {

@@ -16,8 +16,10 @@ use rayon::prelude::*;
 
 use crate::{PathState, camera, first_hit, shade, traverse};
 
-/// Pixels between two looks at the clock.
-const SLICE_PIXELS: usize = 16 * 1024;
+/// Slices shorter than this grow: a slice ends with threads waiting for the last one.
+const SHORTEST_SLICE: Duration = Duration::from_millis(20);
+/// Slices longer than this shrink: only between two slices can a render be stopped.
+const LONGEST_SLICE: Duration = Duration::from_millis(80);
 /// Pixels that one task takes.
 const CHUNK_PIXELS: usize = 128;
 
@@ -36,6 +38,8 @@ struct Job {
     sample: u32,
     /// First pixel that still lacks it.
     next_pixel: usize,
+    /// Pixels that the next slice takes.
+    slice_pixels: usize,
     counters: Counters,
     busy: Duration,
     slices: u64,
@@ -62,7 +66,7 @@ impl Tracer for CpuTracer {
     fn set_scene(&mut self, request: TraceRequest) -> Result<(), TraceError> {
         let key = request.key();
         if self.job.as_ref().is_none_or(|job| job.key != key) {
-            self.job = Some(Job::new(request, key));
+            self.job = Some(Job::new(request, key)?);
         }
         Ok(())
     }
@@ -81,7 +85,7 @@ impl Tracer for CpuTracer {
     }
 
     fn film(&mut self) -> Result<Film, TraceError> {
-        Ok(self.job.as_ref().ok_or_else(no_scene)?.film.clone())
+        self.job.as_ref().ok_or_else(no_scene)?.film.try_clone()
     }
 
     fn stats(&self) -> TraceStats {
@@ -96,12 +100,11 @@ fn no_scene() -> TraceError {
 }
 
 impl Job {
-    fn new(request: TraceRequest, key: FilmKey) -> Self {
-        let mut film = Film::new(key.width, key.height);
-        film.anchor = request.scene.anchor;
-        film.aovs = request.features.has(Feature::Aovs).then(|| vec![Aov::default(); film.pixels.len()]);
-        Self {
-            film,
+    fn new(request: TraceRequest, key: FilmKey) -> Result<Self, TraceError> {
+        let film = Film::allocate(key.width, key.height, request.features.has(Feature::Aovs))?;
+        Ok(Self {
+            film: Film { anchor: request.scene.anchor, ..film },
+            slice_pixels: CHUNK_PIXELS,
             request,
             key,
             sample: 0,
@@ -109,14 +112,20 @@ impl Job {
             counters: Counters::default(),
             busy: Duration::ZERO,
             slices: 0,
-        }
+        })
     }
 
     fn trace_slice(&mut self) {
+        let start = Instant::now();
         let pixel_count = self.film.pixels.len();
-        let end = (self.next_pixel + SLICE_PIXELS).min(pixel_count);
+        let end = (self.next_pixel + self.slice_pixels).min(pixel_count);
         let counters = self.trace_pixels(self.next_pixel..end);
         self.counters.add(&counters);
+        self.slice_pixels = match start.elapsed() {
+            short if short < SHORTEST_SLICE => self.slice_pixels.saturating_mul(2),
+            long if long > LONGEST_SLICE => (self.slice_pixels / 2).max(1),
+            _ => self.slice_pixels,
+        };
         self.slices += 1;
         self.next_pixel = end;
         if end == pixel_count {

@@ -1,6 +1,6 @@
 //! Which passes of the render graph a scene would run, and why.
 use luxel_flat::FeatureSet;
-use luxel_render::NODES;
+use luxel_render::{GraphSet, NODES};
 use serde::Serialize;
 
 /// A node of the graph as `luxel graph` shows it.
@@ -18,12 +18,17 @@ pub struct NodeFacts {
     pub because: &'static str,
 }
 
-/// Every node, in the order in which it would run.
+/// Every node, in the order in which it would run in a render to a file.
 pub fn nodes(features: FeatureSet) -> Vec<NodeFacts> {
     let facts = NODES.iter().map(|node| {
         let row = node.feature.map(|feature| &luxel_flat::FEATURES[feature as usize]);
-        let runs = row.is_none_or(|row| features.has(row.feature));
-        let because = if runs { node.because } else { row.map_or("", |row| row.unused) };
+        let called_for = row.is_none_or(|row| features.has(row.feature));
+        let runs = called_for && node.set != GraphSet::Resolve;
+        let because = match row {
+            _ if runs => node.because,
+            Some(row) if !called_for => row.unused,
+            _ => "no window shows the picture; files are made from the film",
+        };
         NodeFacts { name: node.name, stage: format!("{:?}", node.set), kernels: node.kernels, runs, because }
     });
     facts.collect()

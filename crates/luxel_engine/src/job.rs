@@ -9,6 +9,9 @@ use crate::{BackendChoice, Engine, EngineError};
 /// Largest width or height of a picture.
 pub const MAX_SIZE: u32 = 16_384;
 
+/// Largest depth of a path.
+pub const MAX_DEPTH: u32 = 65_535;
+
 /// What is to be rendered. `None` leaves a setting to the scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RenderJob {
@@ -68,6 +71,9 @@ impl RenderJob {
         }
         if self.spp == Some(0) {
             return refuse("samples per pixel must be at least 1".to_owned());
+        }
+        if self.max_depth.is_some_and(|depth| depth > MAX_DEPTH) {
+            return refuse(format!("the depth must be 0 to {MAX_DEPTH} scatterings"));
         }
         if self.seconds.is_some_and(|s| !(s > 0.0 && s.is_finite())) {
             return refuse("the time limit must be a positive number of seconds".to_owned());

@@ -25,7 +25,7 @@ mod summary;
 pub use backend::{BackendChoice, ChosenTracer};
 pub use engine::Engine;
 pub use error::{EngineError, ExitCode};
-pub use job::{MAX_SIZE, RenderJob};
+pub use job::{MAX_DEPTH, MAX_SIZE, RenderJob};
 pub use luxel_film::{AovKind, ToneMap, View};
 pub use luxel_flat::{Feature, FeatureSet};
 pub use runner::{Observer, RenderEvent, RenderProgress, Rendered, Stopped};

@@ -52,6 +52,8 @@ pub struct Rendered {
     pub film: Film,
     /// The scene that was traced.
     pub scene: Arc<FlatScene>,
+    /// Hash of the scene before the job changed its settings.
+    pub scene_hash: String,
     /// What it was traced with.
     pub facts: BackendFacts,
     /// Why that backend.
@@ -101,19 +103,21 @@ impl Engine {
         job: &RenderJob,
         observer: &'a mut Observer<'b>,
     ) -> Result<Run<'a, 'b>, EngineError> {
+        let scene_hash = self.scene_hash()?;
         job.apply(self)?;
         let scene = self.bake()?;
         let features = scene.features.union(job.extra_features);
         let aovs = job.aovs || features.has(Feature::Aovs);
         let request = TraceRequest { scene, features }.with_aovs(aovs);
         let rules = job.stop_rules(&self.settings());
-        Ok(Run { request, rules, white: self.display().white(), observer })
+        Ok(Run { request, scene_hash, rules, white: self.display().white(), observer })
     }
 }
 
 /// A job on its way through a tracer.
 struct Run<'a, 'b> {
     request: TraceRequest,
+    scene_hash: String,
     rules: Vec<StopRule>,
     /// Radiance that is shown as white.
     white: f64,
@@ -143,6 +147,7 @@ impl Run<'_, '_> {
         let film = tracer.film()?;
         Ok(Rendered {
             scene: Arc::clone(&self.request.scene),
+            scene_hash: self.scene_hash.clone(),
             facts: facts.clone(),
             because: chosen.because.clone(),
             stats: tracer.stats(),

@@ -18,6 +18,8 @@ pub struct StageSecs {
     pub compile: f64,
     /// Tracing.
     pub trace: f64,
+    /// Making and writing the output files; set by whoever does.
+    pub write: f64,
 }
 
 /// Time of one kind of pass.
@@ -36,7 +38,7 @@ pub struct PassSummary {
 pub struct RenderSummary {
     /// The scene file.
     pub scene: String,
-    /// Hash of the scene's content.
+    /// Hash of the scene as it was loaded, before the job changed its settings.
     pub scene_hash: String,
     /// Width in pixels.
     pub width: u32,
@@ -84,7 +86,7 @@ impl Rendered {
         let known = self.samples > 1;
         Ok(RenderSummary {
             scene: engine.path().display().to_string(),
-            scene_hash: engine.scene_hash()?,
+            scene_hash: self.scene_hash.clone(),
             width: self.film.width,
             height: self.film.height,
             spp: self.samples,
@@ -102,6 +104,7 @@ impl Rendered {
                 bake: engine.bake_secs(),
                 compile: self.stats.compile_secs,
                 trace: self.trace_secs,
+                write: 0.0,
             },
             passes: self.passes(),
             rays_per_sec: if self.trace_secs > 0.0 { rays / self.trace_secs } else { 0.0 },
@@ -117,7 +120,7 @@ impl Rendered {
     pub fn metadata(&self, engine: &Engine) -> Result<Metadata, EngineError> {
         Ok(Metadata {
             scene: engine.path().display().to_string(),
-            scene_hash: engine.scene_hash()?,
+            scene_hash: self.scene_hash.clone(),
             samples: self.samples,
             backend: self.facts.backend,
             device: self.facts.device.clone(),

@@ -176,12 +176,6 @@ impl FeatureSet {
         Self(self.0 | other.0)
     }
 
-    /// The features that are in both sets.
-    #[must_use]
-    pub fn intersection(self, other: Self) -> Self {
-        Self(self.0 & other.0)
-    }
-
     /// The rows of the features in the set.
     pub fn rows(self) -> impl Iterator<Item = &'static FeatureRow> {
         FEATURES.iter().filter(move |row| self.has(row.feature))

@@ -79,7 +79,7 @@ impl GpuFilm {
 
     /// Reads everything back.
     pub(crate) fn read(&self, gpu: &Gpu, width: u32, height: u32) -> Result<Film, GpuError> {
-        let mut film = Film { pixels: Vec::new(), ..Film::new(width, height) };
+        let mut film = Film { width, height, ..Film::default() };
         let mut aovs = Vec::new();
         for tile in &self.tiles {
             film.pixels.extend(tile.pixels.read::<FilmPixel>(gpu, 0, tile.count.into())?);

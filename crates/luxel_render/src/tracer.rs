@@ -145,26 +145,27 @@ impl GpuTracer {
     }
 
     /// Traces the paths of a slice to their ends. Deep paths take several submits, the last of them as soon as
-    /// none goes on. Returns the milliseconds of the longest submit.
+    /// none goes on. Returns the milliseconds of all of them, so that slices of
+    /// deep paths become small and a render can be stopped between two.
     fn trace_sample(&mut self, slice: SliceParams, tile: usize, max_depth: u32) -> Result<f64, GpuError> {
         let bounces = max_depth.min(MAX_BOUNCES);
         let finishes = bounces == max_depth;
-        let mut longest_ms =
+        let mut busy_ms =
             self.run(Work { slice, tile, purpose: Purpose::Trace { starts: true, bounces, finishes } })?;
         if finishes {
-            return Ok(longest_ms);
+            return Ok(busy_ms);
         }
         let mut left = max_depth - bounces;
         let mut scattered = self.scattered_rays()?;
         while left > 0 {
             let bounces = left.min(MAX_BOUNCES);
             let purpose = Purpose::Trace { starts: false, bounces, finishes: false };
-            longest_ms = longest_ms.max(self.run(Work { slice, tile, purpose })?);
+            busy_ms += self.run(Work { slice, tile, purpose })?;
             let before = std::mem::replace(&mut scattered, self.scattered_rays()?);
             left = if scattered == before { 0 } else { left - bounces };
         }
         let purpose = Purpose::Trace { starts: false, bounces: 0, finishes: true };
-        Ok(longest_ms.max(self.run(Work { slice, tile, purpose })?))
+        Ok(busy_ms + self.run(Work { slice, tile, purpose })?)
     }
 
     fn scattered_rays(&self) -> Result<u64, GpuError> {
@@ -296,6 +297,8 @@ impl Tracer for GpuTracer {
         let key = request.key();
         if self.job.as_ref().is_none_or(|job| job.key != key) {
             self.job = None;
+            // What will be read back must fit the host: better to fail now than after the work.
+            Film::check_room(key.width, key.height, request.features.has(Feature::Aovs))?;
             self.job = Some(self.start(request, key).map_err(trace_error)?);
         }
         Ok(())

@@ -96,6 +96,16 @@ pub enum SceneError {
         /// Why.
         message: String,
     },
+    /// A model file that a scene file names and that cannot be used.
+    #[error("{}: {place}: {source}", path.display())]
+    Asset {
+        /// The scene file.
+        path: PathBuf,
+        /// The asset, such as `mesh 1`.
+        place: String,
+        /// What is wrong with the model file.
+        source: Box<SceneError>,
+    },
     /// The file could not be written; what was there before is untouched.
     #[error("{}: cannot be written: {source}", path.display())]
     Write {
@@ -110,6 +120,24 @@ impl SceneError {
     /// A model file that is damaged at `place`.
     pub(crate) fn model(path: &Path, place: impl ToString, message: impl Into<String>) -> Self {
         Self::Model { path: path.to_owned(), place: place.to_string(), message: message.into() }
+    }
+
+    /// The same about `new_path`: the file as the user calls it.
+    pub(crate) fn renamed(mut self, new_path: &Path) -> Self {
+        let (Self::Read { path, .. }
+        | Self::NotAFile { path }
+        | Self::UnknownKind { path }
+        | Self::Empty { path }
+        | Self::TooLarge { path, .. }
+        | Self::Syntax { path, .. }
+        | Self::Version { path, .. }
+        | Self::Invalid { path, .. }
+        | Self::Model { path, .. }
+        | Self::Unusable { path, .. }
+        | Self::Asset { path, .. }
+        | Self::Write { path, .. }) = &mut self;
+        *path = new_path.to_owned();
+        self
     }
 
     /// A model file that leaves nothing to show.

@@ -6,7 +6,7 @@ use luxel_film::Backend;
 pub struct Metadata {
     /// Path of the scene file as it was given.
     pub scene: String,
-    /// Hash of the scene as it was rendered, its settings included.
+    /// Hash of the scene as it was loaded, before the job changed its settings.
     pub scene_hash: String,
     /// Samples that every pixel has.
     pub samples: u32,

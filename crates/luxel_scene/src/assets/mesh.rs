@@ -64,7 +64,8 @@ pub enum MeshSource {
 
 /// Triangles in object space (metres), counter-clockwise seen from the front.
 ///
-/// Invariants: every index is below `positions.len()`; all positions that a triangle uses are finite;
+/// Invariants: every index is below `positions.len()`; all positions that a triangle uses are finite, and
+/// those of a file within ±2⁶⁰ on each axis;
 /// no triangle has two equal corners; `triangle_ids` is strictly rising and as long as `triangles`.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct TriangleMesh {
@@ -100,8 +101,8 @@ impl TriangleMesh {
 pub struct Dropped {
     /// A corner does not exist.
     pub bad_index: u32,
-    /// A corner is NaN, infinite or not a number at all.
-    pub non_finite: u32,
+    /// A corner is NaN, infinite or farther than 2⁶⁰ (about 1e18) from the origin on an axis.
+    pub out_of_range: u32,
     /// No area: equal or collinear corners.
     pub zero_area: u32,
 }
@@ -109,17 +110,19 @@ pub struct Dropped {
 impl Dropped {
     /// All of them.
     pub fn total(&self) -> u32 {
-        self.bad_index + self.non_finite + self.zero_area
+        self.bad_index + self.out_of_range + self.zero_area
     }
 }
 
 impl fmt::Display for Dropped {
-    /// The reasons that occur, as `2 bad index, 1 non-finite`.
+    /// The reasons that occur, as `2 bad index, 1 zero area`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";
-        for (count, reason) in
-            [(self.bad_index, "bad index"), (self.non_finite, "non-finite"), (self.zero_area, "zero area")]
-        {
+        for (count, reason) in [
+            (self.bad_index, "bad index"),
+            (self.out_of_range, "not finite or beyond 1e18"),
+            (self.zero_area, "zero area"),
+        ] {
             if count > 0 {
                 write!(f, "{separator}{count} {reason}")?;
                 separator = ", ";

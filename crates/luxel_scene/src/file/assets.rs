@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::assets::{AssetId, Assets, Dropped, MeshAsset, MeshSource, VolumeAsset, VolumeSource};
+use crate::assets::{Assets, Dropped, MeshAsset, MeshSource, VolumeAsset, VolumeSource};
 use crate::error::SceneError;
 use crate::import::{ObjCache, VoxFile, canonical};
 use crate::procedural;
@@ -20,8 +20,10 @@ pub(super) fn load_assets(path: &Path, file: &SceneFile) -> Result<(Assets, Load
     let mut report = LoadReport::default();
     let mut meshes = BTreeMap::new();
     for (&id, source) in &file.meshes {
-        let source = resolve_mesh(path, id, source)?;
-        meshes.insert(id, Arc::new(mesh_asset(source, &mut objs)?));
+        let place = format!("mesh {}", id.0);
+        let source = resolve_mesh(path, &place, source)?;
+        let asset = mesh_asset(source, &mut objs).map_err(|error| asset_error(path, &place, error))?;
+        meshes.insert(id, Arc::new(asset));
     }
     for (path, obj) in objs.files() {
         report.dropped.extend(obj.dropped_line(path));
@@ -29,8 +31,10 @@ pub(super) fn load_assets(path: &Path, file: &SceneFile) -> Result<(Assets, Load
     }
     let mut volumes = BTreeMap::new();
     for (&id, source) in &file.volumes {
-        let source = resolve_volume(path, id, source)?;
-        volumes.insert(id, Arc::new(volume_asset(source, &mut report)?));
+        let place = format!("volume {}", id.0);
+        let source = resolve_volume(path, &place, source)?;
+        let asset = volume_asset(source, &mut report).map_err(|error| asset_error(path, &place, error))?;
+        volumes.insert(id, Arc::new(asset));
     }
     let used = file.meshes.keys().chain(file.volumes.keys()).max();
     let next = used.map_or(1, |id| id.0 + 1).max(file.next_asset.unwrap_or(1));
@@ -71,8 +75,12 @@ pub(crate) fn volume_asset(source: VolumeSource, report: &mut LoadReport) -> Res
     Ok(VolumeAsset { source, grid })
 }
 
-fn resolve_mesh(scene: &Path, id: AssetId, source: &MeshSource) -> Result<MeshSource, SceneError> {
-    let resolve = |path| resolve(scene, format!("mesh {}", id.0), path);
+fn asset_error(scene: &Path, place: &str, error: SceneError) -> SceneError {
+    SceneError::Asset { path: scene.to_owned(), place: place.to_owned(), source: Box::new(error) }
+}
+
+fn resolve_mesh(scene: &Path, place: &str, source: &MeshSource) -> Result<MeshSource, SceneError> {
+    let resolve = |path| resolve(scene, place, path);
     Ok(match source {
         MeshSource::File(path) => MeshSource::File(resolve(path)?),
         MeshSource::FilePart(path, part) => MeshSource::FilePart(resolve(path)?, *part),
@@ -80,23 +88,24 @@ fn resolve_mesh(scene: &Path, id: AssetId, source: &MeshSource) -> Result<MeshSo
     })
 }
 
-fn resolve_volume(scene: &Path, id: AssetId, source: &VolumeSource) -> Result<VolumeSource, SceneError> {
+fn resolve_volume(scene: &Path, place: &str, source: &VolumeSource) -> Result<VolumeSource, SceneError> {
     Ok(match source {
-        VolumeSource::File(path) => VolumeSource::File(resolve(scene, format!("volume {}", id.0), path)?),
+        VolumeSource::File(path) => VolumeSource::File(resolve(scene, place, path)?),
         recipe => recipe.clone(),
     })
 }
 
 /// A path of the scene file as an absolute one. Folders beside the scene's are fine, for a scene is
 /// one's own; absolute paths (which no other machine has), drives, shares and URLs are not.
-fn resolve(scene: &Path, place: String, path: &PathBuf) -> Result<PathBuf, SceneError> {
+fn resolve(scene: &Path, place: &str, path: &PathBuf) -> Result<PathBuf, SceneError> {
     let text = path.to_string_lossy();
     if path.has_root() || text.contains([':', '\\']) || text.is_empty() {
         let flaw = Flaw {
             field: "path".to_owned(),
             message: format!("must be relative to the scene file, but is \"{text}\""),
         };
-        return Err(invalid(scene, place, flaw));
+        return Err(invalid(scene, place.to_owned(), flaw));
     }
-    canonical(&scene.parent().unwrap_or(Path::new("")).join(path))
+    let beside = scene.parent().unwrap_or(Path::new("")).join(path);
+    canonical(&beside).map_err(|error| asset_error(scene, place, error))
 }

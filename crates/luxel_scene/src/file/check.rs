@@ -10,7 +10,7 @@ use crate::material::{Material, Surface};
 use crate::procedural::Scatter;
 use crate::resources::{Environment, RenderSettings};
 
-use super::record::{CameraRecord, EntityRecord, SceneFile, TransformRecord};
+use super::record::{CameraRecord, EntityRecord, SceneFile, TransformRecord, is_nearly_unit};
 
 /// A field that is wrong, and what it must be.
 #[derive(Debug)]
@@ -141,10 +141,8 @@ fn check_transform(transform: &TransformRecord) -> Checked {
         &[transform.rotation.is_some(), transform.rotation_degrees.is_some(), transform.look_at.is_some()],
     )?;
     if let Some(rotation) = transform.rotation {
-        // Wide enough for six decimals written by hand; what is saved is never changed by it.
-        let unit = (rotation.length_squared() - 1.0).abs() < 1e-5;
         let rule = "a quaternion (x, y, z, w) of length 1";
-        require(unit, "transform.rotation", rule, rotation.to_array())?;
+        require(is_nearly_unit(rotation), "transform.rotation", rule, rotation.to_array())?;
     }
     if let Some(degrees) = transform.rotation_degrees {
         finite("transform.rotation_degrees", degrees)?;
@@ -152,7 +150,7 @@ fn check_transform(transform: &TransformRecord) -> Checked {
     if let Some(target) = transform.look_at {
         finite("transform.look_at", target)?;
         let elsewhere = target != transform.translation;
-        require(elsewhere, "transform.look_at", "another place than the translation", target)?;
+        require(elsewhere, "transform.look_at", "another place than the translation", target.to_array())?;
     }
     Ok(())
 }

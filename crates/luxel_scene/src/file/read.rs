@@ -22,10 +22,13 @@ use super::world::fill;
 /// The longest scene file that is read: 1 GiB.
 const MAX_SCENE_BYTES: u64 = 1 << 30;
 
+/// What some editors begin a UTF-8 file with.
+const BYTE_ORDER_MARK: &[u8] = "\u{FEFF}".as_bytes();
+
 /// Reads the scene file at `path` into `world`, which is untouched unless all went well.
 pub(crate) fn load_scene(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
     let bytes = read_file(path, MAX_SCENE_BYTES)?;
-    let mut file = parse(path, &bytes)?;
+    let mut file = parse(path, bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes))?;
     let next_id = check(&mut file).map_err(|(place, flaw)| invalid(path, place, flaw))?;
     let (assets, report) = load_assets(path, &file)?;
     fill(world, &file, next_id, assets);

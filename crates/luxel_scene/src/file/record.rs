@@ -86,7 +86,7 @@ impl EntityRecord {
 #[serde(default, deny_unknown_fields)]
 pub(super) struct TransformRecord {
     pub(super) translation: DVec3,
-    /// A unit quaternion (x, y, z, w): what is saved.
+    /// A quaternion (x, y, z, w) of about unit length: what is saved.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) rotation: Option<DQuat>,
     /// For hand-written files: about X, then Y, then Z of the parent.
@@ -115,7 +115,7 @@ impl TransformRecord {
     pub(super) fn of(transform: &Transform) -> Self {
         Self {
             translation: transform.translation,
-            rotation: Some(transform.rotation),
+            rotation: Some(unit(transform.rotation)),
             scale: transform.scale,
             ..Self::default()
         }
@@ -132,6 +132,7 @@ impl TransformRecord {
             translation: self.translation,
             rotation: self
                 .rotation
+                .map(unit)
                 .or(self.rotation_degrees.map(turned))
                 .or(self.look_at.map(looking))
                 .unwrap_or(DQuat::IDENTITY),
@@ -146,6 +147,18 @@ impl TransformRecord {
         };
         bits(&self.transform()) == bits(&Transform::default())
     }
+}
+
+/// Whether a quaternion is meant to be one of length 1: two decimals written by hand suffice.
+pub(super) fn is_nearly_unit(rotation: DQuat) -> bool {
+    (rotation.length() - 1.0).abs() <= 1e-2
+}
+
+/// A nearly unit quaternion at length 1, any other as it is. One that is unit up to the rounding of a
+/// normalisation is kept bit for bit, so doing this twice is doing it once.
+fn unit(rotation: DQuat) -> DQuat {
+    let is_exact = (rotation.length_squared() - 1.0).abs() <= 8.0 * f64::EPSILON;
+    if is_nearly_unit(rotation) && !is_exact { rotation.normalize() } else { rotation }
 }
 
 /// A camera; its angle in radians (what is saved) or in degrees.

@@ -15,6 +15,10 @@ use glam::{DVec3, Vec3};
 use crate::assets::Dropped;
 use crate::error::SceneError;
 
+/// The farthest coordinate of a corner, 2⁶⁰: beyond it, squares of lengths leave single precision, and
+/// what bake places is left out as a whole.
+const FARTHEST: f64 = (1u64 << 60) as f64;
+
 /// A clean .obj text and what was left out of it.
 #[derive(Debug, Default)]
 pub(super) struct CleanObj {
@@ -91,8 +95,8 @@ impl CleanObj {
             self.dropped.bad_index += 1;
             return;
         };
-        if !(a.is_finite() && b.is_finite() && c.is_finite()) {
-            self.dropped.non_finite += 1;
+        if ![a, b, c].into_iter().all(is_in_range) {
+            self.dropped.out_of_range += 1;
         } else if (b - a).cross(c - a) == DVec3::ZERO {
             self.dropped.zero_area += 1;
         } else {
@@ -101,6 +105,10 @@ impl CleanObj {
             let _ = writeln!(self.text, "f {a} {b} {c}");
         }
     }
+}
+
+fn is_in_range(position: DVec3) -> bool {
+    position.is_finite() && position.abs().max_element() <= FARTHEST
 }
 
 /// All `v` lines: the first three numbers of each (a weight or a colour may follow).

@@ -1,0 +1,76 @@
+//! Options of a render that its output cannot show.
+use std::path::Path;
+
+use luxel_engine::View;
+use luxel_engine::output::Format;
+
+use crate::args::RenderArgs;
+
+const LINEAR: &str = "an EXR holds linear light";
+const LINEAR_BUT_ERROR: &str = "an EXR holds linear light (only the error estimate takes the exposure in)";
+const NOT_PATH: &str = "only --view path is tone mapped";
+const NOT_PATH_BUT_ERROR: &str = "only --view path is exposed (and the error estimate takes the exposure in)";
+const NOT_EXR: &str = "it is for an EXR";
+
+/// One note per option that was given and does not change what is written to `output`.
+///
+/// `--aov` is never among them: it adds layers to an EXR and files beside a PNG.
+pub(crate) fn ignored(args: &RenderArgs, output: &Path) -> Vec<String> {
+    let is_exr = matches!(Format::of(output), Ok(Format::Exr));
+    let (curve, exposure) = match (is_exr, args.view) {
+        (true, _) => (Some(LINEAR), Some(LINEAR_BUT_ERROR)),
+        (false, View::PathTraced) => (None, None),
+        (false, _) => (Some(NOT_PATH), Some(NOT_PATH_BUT_ERROR)),
+    };
+    let precision = (!is_exr).then_some(NOT_EXR);
+    let options = [
+        ("--tone-map", args.tone_map.is_some(), curve),
+        ("--exposure", args.exposure.is_some(), exposure),
+        ("--exr-precision", args.exr_precision.is_some(), precision),
+    ];
+    let given = options.into_iter().filter(|(_, is_given, _)| *is_given);
+    given
+        .filter_map(|(option, _, why)| {
+            why.map(|why| format!("{option} has no effect on {}: {why}", output.display()))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+    use crate::args::{Cli, Command};
+
+    /// The first word of each note on a render to `output` with these options.
+    fn options_without_effect(output: &str, options: &str) -> Vec<String> {
+        let line = format!("luxel render a.ron {options}");
+        let Some(Command::Render(args)) = Cli::try_parse_from(line.split_whitespace()).unwrap().command
+        else {
+            panic!()
+        };
+        let notes = ignored(&args, Path::new(output));
+        notes.iter().map(|note| note.split(' ').next().unwrap().to_owned()).collect()
+    }
+
+    #[test]
+    fn an_exr_takes_no_curve_and_a_png_no_precision() {
+        let all = "--tone-map agx --exposure 0 --exr-precision half --aov ids";
+        assert_eq!(options_without_effect("a.exr", all), ["--tone-map", "--exposure"]);
+        assert_eq!(options_without_effect("a.png", all), ["--exr-precision"]);
+    }
+
+    #[test]
+    fn a_view_of_something_else_is_not_tone_mapped() {
+        let all = "--view steps --exposure -1 --tone-map none";
+        assert_eq!(options_without_effect("a.png", all), ["--tone-map", "--exposure"]);
+    }
+
+    #[test]
+    fn what_was_not_given_is_not_mentioned() {
+        for output in ["a.exr", "a.png"] {
+            assert!(options_without_effect(output, "--aov albedo").is_empty(), "{output}");
+        }
+    }
+}
