@@ -32,7 +32,7 @@ fn main() -> anyhow::Result<()> {
 
     let picture = Picture::of(&rendered.film, engine.display(), View::PathTraced).context("no picture")?;
     let path = out.join("mixed_scene.png");
-    write_png(&path, &picture, &rendered.metadata(&engine)?)?;
+    write_png(&path, &picture, &rendered.metadata(&engine))?;
     println!("wrote {}", path.display());
     Ok(())
 }

@@ -65,7 +65,7 @@ fn render(engine: &mut Engine, quick: bool, path: &std::path::Path) -> anyhow::R
     };
     let rendered = engine.render(&job, &mut |_| ControlFlow::Continue(()))?;
     let picture = Picture::of(&rendered.film, engine.display(), View::PathTraced).context("no picture")?;
-    write_png(path, &picture, &rendered.metadata(engine)?)?;
+    write_png(path, &picture, &rendered.metadata(engine))?;
     println!("wrote {}", path.display());
     Ok(())
 }

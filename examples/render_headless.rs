@@ -28,7 +28,7 @@ fn main() -> anyhow::Result<()> {
     let picture = Picture::of(&rendered.film, engine.display(), View::PathTraced)
         .ok_or_else(|| anyhow::anyhow!("the film has no picture"))?;
     let path = options.out.join("render_headless.png");
-    write_png(&path, &picture, &rendered.metadata(&engine)?)?;
+    write_png(&path, &picture, &rendered.metadata(&engine))?;
     eprintln!("\r{} on {}: {}", path.display(), rendered.facts.device, rendered.because);
     Ok(())
 }

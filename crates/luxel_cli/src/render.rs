@@ -98,7 +98,7 @@ fn run(
     let start = Instant::now();
     let outputs = targets.write(&rendered, &engine)?;
     let write_secs = start.elapsed().as_secs_f64();
-    let mut summary = rendered.summary(&engine)?;
+    let mut summary = rendered.summary(&engine);
     summary.seconds.write = write_secs;
     tell_notices(&rendered, &summary, &progress);
     drop(progress);

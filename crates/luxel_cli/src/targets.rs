@@ -33,7 +33,7 @@ impl Targets {
 
     /// Writes everything and gives the files, the picture first.
     pub(crate) fn write(&self, rendered: &Rendered, engine: &Engine) -> Result<Vec<PathBuf>, CliError> {
-        let metadata = rendered.metadata(engine)?;
+        let metadata = rendered.metadata(engine);
         match Format::of(&self.output)? {
             Format::Exr => {
                 output::write_exr(&self.output, &rendered.film, &self.aovs, self.precision, &metadata)?;

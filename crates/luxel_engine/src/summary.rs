@@ -5,7 +5,7 @@ use luxel_film::StopRule;
 use serde::Serialize;
 
 use crate::output::Metadata;
-use crate::{Engine, EngineError, Rendered, Stopped};
+use crate::{Engine, Rendered, Stopped};
 
 /// Seconds per stage.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -78,13 +78,10 @@ pub struct RenderSummary {
 
 impl Rendered {
     /// The numbers of this render of an engine's scene.
-    ///
-    /// # Errors
-    /// When the scene cannot be hashed.
-    pub fn summary(&self, engine: &Engine) -> Result<RenderSummary, EngineError> {
+    pub fn summary(&self, engine: &Engine) -> RenderSummary {
         let rays = self.stats.counters.rays() as f64;
         let known = self.samples > 1;
-        Ok(RenderSummary {
+        RenderSummary {
             scene: engine.path().display().to_string(),
             scene_hash: self.scene_hash.clone(),
             width: self.film.width,
@@ -110,15 +107,12 @@ impl Rendered {
             rays_per_sec: if self.trace_secs > 0.0 { rays / self.trace_secs } else { 0.0 },
             counters: self.stats.counters.iter().collect(),
             notices: self.all_notices(engine),
-        })
+        }
     }
 
     /// What is written into output files.
-    ///
-    /// # Errors
-    /// When the scene cannot be hashed.
-    pub fn metadata(&self, engine: &Engine) -> Result<Metadata, EngineError> {
-        Ok(Metadata {
+    pub fn metadata(&self, engine: &Engine) -> Metadata {
+        Metadata {
             scene: engine.path().display().to_string(),
             scene_hash: self.scene_hash.clone(),
             samples: self.samples,
@@ -127,7 +121,7 @@ impl Rendered {
             seconds: self.trace_secs,
             features: self.scene.features.rows().map(|row| row.name.to_owned()).collect(),
             settings: format!("{:?}", engine.settings()),
-        })
+        }
     }
 
     fn stopped_by(&self) -> &'static str {

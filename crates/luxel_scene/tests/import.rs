@@ -48,13 +48,72 @@ fn bad_triangles_are_dropped_counted_and_leave_the_ids_of_the_others() {
          f 99999999999999999999 1 2\nf 1 2\nf 2/9/9 3//9 4/9\n"
     );
     let (world, report) = obj(&text);
-    let dropped = "model.obj: dropped 9 of 12 triangles (5 bad index, 2 non-finite, 2 zero area)";
+    let dropped =
+        "model.obj: dropped 9 of 12 triangles (5 bad index, 2 not finite or beyond 1e18, 2 zero area)";
     assert_eq!(report.unwrap().dropped, [dropped]);
     let [mesh] = model_meshes(&world).try_into().unwrap();
     assert_eq!(mesh.mesh.triangle_ids, [0, 1, 11]);
     assert!(mesh.mesh.positions.iter().all(|p| p.is_finite()));
     let corners = mesh.mesh.triangles[2].map(|index| mesh.mesh.positions[index as usize].to_array());
     assert_eq!(corners, [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]);
+}
+
+#[test]
+fn one_vertex_far_out_of_range_costs_its_triangles_only() {
+    for far in ["1e19", "-1e30", "1e31", "1e38"] {
+        let (world, report) = obj(&format!("{SQUARE}v 0 {far} 0\nf 1 2 3\nf 1 2 5\nf 1 3 4\n"));
+        let dropped = "model.obj: dropped 1 of 3 triangles (1 not finite or beyond 1e18)";
+        assert_eq!(report.unwrap().dropped, [dropped], "{far}");
+        let [mesh] = model_meshes(&world).try_into().unwrap();
+        assert_eq!(mesh.mesh.triangle_ids, [0, 2], "{far}");
+        assert_eq!(mesh.mesh.bounds(), Some((glam::Vec3::ZERO, glam::Vec3::new(1.0, 1.0, 0.0))));
+    }
+}
+
+#[test]
+fn a_file_keeps_corners_up_to_two_to_the_sixty() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("far.obj");
+    let limit = (1u64 << 60) as f32;
+    let dropped = |far: f32| {
+        fs::write(&path, format!("{SQUARE}v {far} 0 0\nf 1 2 3\nf 2 3 5\n")).unwrap();
+        MeshAsset::from_source(MeshSource::File(path.clone())).unwrap().dropped.out_of_range
+    };
+    assert_eq!((dropped(-limit), dropped(limit.next_up())), (0, 1));
+}
+
+#[test]
+fn a_model_that_no_default_camera_can_frame_is_one_clear_error_about_its_box() {
+    let model = |size: &str| {
+        let (mut world, result) = obj(&format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n"));
+        assert!(result.is_ok() || world.query::<&StableId>().iter(&world).count() == 0);
+        result
+    };
+    for (size, expected) in [
+        ("1e20", "none of its 1 triangles can be used (1 not finite or beyond 1e18)"),
+        ("1e17", "its box, [0.0, 0.0, 0.0] to ["),
+        ("1e10", "is too large for the default camera"),
+        ("1e-10", "is too small for the default camera"),
+        ("1e-30", "is too small for the default camera"),
+    ] {
+        let message = model(size).unwrap_err();
+        assert!(message.contains(expected), "{size}: {message}");
+    }
+    for size in ["1e-8", "1", "1e9"] {
+        assert_eq!(model(size), Ok(LoadReport::default()), "{size}");
+    }
+}
+
+#[test]
+fn errors_call_a_model_what_the_user_called_it() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("below")).unwrap();
+    for name in ["bad.obj", "bad.vox"] {
+        fs::write(folder.path().join(name), "f x y z\n").unwrap();
+        let typed = folder.path().join("below/..").join(name);
+        let message = load(&typed, &mut empty_world()).unwrap_err().to_string();
+        assert!(message.starts_with(&format!("{}:", typed.display())), "{message}");
+    }
 }
 
 #[test]

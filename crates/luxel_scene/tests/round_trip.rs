@@ -320,6 +320,20 @@ fn the_hash_notices_a_single_bit() {
 }
 
 #[test]
+fn a_rotation_that_has_drifted_is_saved_as_the_unit_one_that_is_loaded() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drifted.ron");
+    let mut world = empty_world();
+    let rotation = DQuat::from_xyzw(0.6, 0.0, 0.0, 0.8 + 1e-7);
+    spawn(&mut world, Transform { rotation, ..Transform::default() });
+    save(&world, &path).unwrap();
+    let mut loaded = load_new(&path);
+    assert_eq!(world_hash(&world).unwrap(), world_hash(&loaded).unwrap());
+    let loaded = loaded.query::<&Transform>().single(&loaded).unwrap().rotation;
+    assert!((loaded.length_squared() - 1.0).abs() < 1e-15 && loaded.abs_diff_eq(rotation, 1e-7));
+}
+
+#[test]
 fn a_world_that_no_file_may_hold_is_not_saved_and_the_old_file_stays() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.ron");

@@ -42,7 +42,13 @@ const ENTITY_MISTAKES: &[(&str, &str, &str)] = &[
     ("transform.rotation", "transform: (rotation: (0, 0, 0, 2))", "quaternion (x, y, z, w) of length 1"),
     ("transform.rotation", "transform: (rotation: (NaN, 0, 0, 1))", "quaternion (x, y, z, w) of length 1"),
     ("transform.rotation_degrees", "transform: (rotation_degrees: (0, inf, 0))", "must be finite"),
-    ("transform.look_at", "transform: (look_at: (0, 0, 0))", "another place"),
+    ("transform.rotation", "transform: (rotation: (0.7, 0, 0, 0.7))", "quaternion (x, y, z, w) of length 1"),
+    ("transform.rotation", "transform: (rotation: (0, 0, 0, 1.02))", "quaternion (x, y, z, w) of length 1"),
+    (
+        "transform.look_at",
+        "transform: (translation: (0, 0, 6), look_at: (0, 0, 6))",
+        "must be another place than the translation, but is [0.0, 0.0, 6.0]",
+    ),
     ("transform.look_at", "transform: (look_at: (0, 0, NaN))", "must be finite"),
     (
         "transform.rotation, rotation_degrees and look_at",
@@ -102,11 +108,16 @@ const FILE_MISTAKES: &[(&str, &str)] = &[
     ("meshes: {1: File(\"http://example.org/a.obj\")}", "mesh 1: path must be relative"),
     ("meshes: {1: File(\"C:\\\\a.obj\")}", "mesh 1: path must be relative"),
     ("meshes: {1: File(\"\")}", "mesh 1: path must be relative"),
-    ("meshes: {1: File(\"none.obj\")}", "none.obj: cannot be read"),
+    ("meshes: {1: File(\"none.obj\")}", "bad.ron: mesh 1: none.obj: cannot be read"),
+    ("meshes: {1: File(\".\")}", "bad.ron: mesh 1: "),
     ("meshes: {1: File(\".\")}", "is not a regular file"),
+    // A file that is no model: this scene itself.
+    ("meshes: {1: File(\"bad.ron\")}", "bad.ron: mesh 1: bad.ron: has no triangle"),
+    ("meshes: {2: FilePart(\"bad.ron\", 3)}", "bad.ron: mesh 2: bad.ron: has no triangle"),
+    ("volumes: {1: File(\"bad.ron\")}", "bad.ron: volume 1: bad.ron:"),
     ("volumes: {1: Menger(level: 6)}", "volume 1: level must be in 0 to 5"),
     ("volumes: {1: Island(size: 8, seed: 1)}", "volume 1: size must be in 16 to 512"),
-    ("volumes: {1: File(\"none.vox\")}", "none.vox: cannot be read"),
+    ("volumes: {1: File(\"none.vox\")}", "bad.ron: volume 1: none.vox: cannot be read"),
     ("meshes: {1: Quad}, volumes: {1: Menger(level: 1)}", "volume 1: id is a mesh's id too"),
     ("scatter: [(count: 0, seed: 1, min: (0,0,0), max: (1,1,1), radius: (1, 2))]", "scatter 0: count"),
     ("scatter: [(count: 9, seed: 1, min: (0,2,0), max: (1,1,1), radius: (1, 2))]", "scatter 0: max"),
@@ -239,6 +250,29 @@ fn conveniences_of_hand_written_files_become_plain_components() {
         assert!((11..16).contains(&id.0));
         assert_eq!(transform.translation.y, sphere.radius);
     }
+}
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_a_scene() {
+    let mut world = load_text("\u{FEFF}(version: 1, entities: [(sphere: (radius: 2))])").unwrap();
+    assert_eq!(world.query::<&Sphere>().iter(&world).count(), 1);
+}
+
+#[test]
+fn a_rounded_quaternion_is_normalised_and_an_exact_one_is_kept() {
+    let rotation = |text: &str| {
+        let mut world = load_text(&entity(&format!("transform: (rotation: {text})"))).unwrap();
+        world.query::<&Transform>().single(&world).unwrap().rotation
+    };
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    for text in ["(0.707, 0, 0, 0.707)", "(0.71, 0, 0, 0.71)", "(0.707107, 0, 0, 0.707107)"] {
+        let normalised = rotation(text);
+        assert!(normalised.abs_diff_eq(glam::DQuat::from_xyzw(half, 0.0, 0.0, half), 1e-15), "{text}");
+    }
+    let exact = glam::DQuat::from_xyzw(0.1, -0.7, 0.3, 0.2).normalize();
+    let [x, y, z, w] = exact.to_array();
+    let kept = rotation(&format!("({x:?}, {y:?}, {z:?}, {w:?})"));
+    assert_eq!(kept.to_array().map(f64::to_bits), exact.to_array().map(f64::to_bits));
 }
 
 #[test]

@@ -65,8 +65,8 @@ pub enum MeshSource {
 /// Triangles in object space (metres), counter-clockwise seen from the front.
 ///
 /// Invariants: every index is below `positions.len()`; all positions that a triangle uses are finite, and
-/// those of a file within ±2⁶⁰ on each axis;
-/// no triangle has two equal corners; `triangle_ids` is strictly rising and as long as `triangles`.
+/// those from a file within ±2⁶⁰ on each axis; no triangle has two equal corners; `triangle_ids` is
+/// strictly rising and as long as `triangles`.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct TriangleMesh {
     /// Corners.

@@ -154,10 +154,10 @@ pub(super) fn is_nearly_unit(rotation: DQuat) -> bool {
     (rotation.length() - 1.0).abs() <= 1e-2
 }
 
-/// A nearly unit quaternion at length 1, any other as it is. One that is unit up to the rounding of a
-/// normalisation is kept bit for bit, so doing this twice is doing it once.
+/// A nearly unit quaternion at length 1, any other as it is. One that is unit up to the rounding of a few
+/// products is kept bit for bit, so doing this twice is doing it once.
 fn unit(rotation: DQuat) -> DQuat {
-    let is_exact = (rotation.length_squared() - 1.0).abs() <= 8.0 * f64::EPSILON;
+    let is_exact = (rotation.length_squared() - 1.0).abs() <= 64.0 * f64::EPSILON;
     if is_nearly_unit(rotation) && !is_exact { rotation.normalize() } else { rotation }
 }
 

@@ -19,6 +19,11 @@ use crate::resources::{Environment, RenderSettings};
 
 use super::{ObjFile, VoxFile, canonical};
 
+/// The largest model that the stage is set for, half its diagonal; the inverse is the smallest. Ground
+/// and lamp are hundreds of times larger, and tracers multiply three lengths in single precision:
+/// pictures stay right from about 1e-11 to 1e9.
+const LARGEST_RADIUS: f64 = (1u64 << 30) as f64;
+
 /// The box that a model fills, Y up.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
@@ -36,6 +41,21 @@ impl Bounds {
         (self.max - self.min).length() * 0.5
     }
 
+    /// Refuses the model at `path` if no picture of its stage could be right.
+    fn check(self, path: &Path) -> Result<(), SceneError> {
+        let flaw = match self.radius() {
+            radius if radius > LARGEST_RADIUS => "large",
+            radius if radius < 1.0 / LARGEST_RADIUS => "small",
+            _ => return Ok(()),
+        };
+        let (min, max) = (self.min.to_array(), self.max.to_array());
+        let message = format!(
+            "its box, {min:?} to {max:?}, is too {flaw} for the default camera: \
+             half the diagonal must be 1e-9 to 1e9"
+        );
+        Err(SceneError::unusable(path, message))
+    }
+
     fn corners(self) -> impl Iterator<Item = DVec3> {
         (0..8u8).map(move |corner| {
             let pick = |bit: u8| f64::from(corner >> bit & 1);
@@ -47,15 +67,17 @@ impl Bounds {
 /// Fills `world` with an .obj model on a ground: a root entity, and below it one entity for every
 /// (object, material).
 pub(crate) fn load_obj_scene(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
-    let path = &canonical(path)?;
-    let file = ObjFile::read(path)?;
+    let typed = path;
+    let path = &canonical(typed)?;
+    let file = ObjFile::read(path).map_err(|error| error.renamed(typed))?;
     let bounds = file
         .parts
         .iter()
         .filter_map(|part| part.mesh.bounds())
         .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
         .map(|(min, max)| Bounds { min: min.as_dvec3(), max: max.as_dvec3() })
-        .ok_or_else(|| SceneError::unusable(path, "has no triangle"))?;
+        .ok_or_else(|| SceneError::unusable(typed, "has no triangle"))?;
+    bounds.check(typed)?;
     let dropped = file.dropped_line(path).into_iter().collect();
     let root = spawn(world, (model_name(path), Transform::default()));
     for (index, part) in (0..).zip(file.parts) {
@@ -73,8 +95,9 @@ pub(crate) fn load_obj_scene(path: &Path, world: &mut World) -> Result<LoadRepor
 
 /// Fills `world` with a .vox model on a ground.
 pub(crate) fn load_vox_scene(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
-    let path = &canonical(path)?;
-    let file = VoxFile::read(path)?;
+    let typed = path;
+    let path = &canonical(typed)?;
+    let file = VoxFile::read(path).map_err(|error| error.renamed(typed))?;
     let bounds = Bounds { min: DVec3::ZERO, max: file.grid.size.as_dvec3() };
     let report =
         LoadReport { dropped: file.dropped_line(path).into_iter().collect(), warnings: file.warnings };
