@@ -43,7 +43,7 @@ pub fn steps(before: &Counters, after: &Counters) -> u32 {
         Counter::TlasNodes,
         Counter::BvhNodes,
         Counter::TriangleTests,
-        Counter::OctreeNodes,
+        Counter::SphereNodes,
         Counter::SphereTests,
         Counter::SvoNodes,
         Counter::VoxelTests,

@@ -40,7 +40,7 @@ fn o03_b03_nested() {
         let mut counters = Counters::default();
         let ray: Ray<f32> = Ray::new(Vec3::new(3.0 * reach, 0.1 * reach, 0.0), -Vec3::X);
         luxel_cpu::traverse::intersect(&scene, &ray, &Exclusion::NOTHING, &mut counters);
-        assert!(counters[Counter::OctreeNodes] <= 64, "{}", counters[Counter::OctreeNodes]);
+        assert!(counters[Counter::SphereNodes] <= 64, "{}", counters[Counter::SphereNodes]);
     }
 }
 

@@ -34,8 +34,8 @@ counters! {
     BvhNodes => "bvh_nodes",
     /// Ray-triangle tests.
     TriangleTests => "triangle_tests",
-    /// Nodes of the sphere octree visited.
-    OctreeNodes => "octree_nodes",
+    /// Nodes of the structure over the spheres visited.
+    SphereNodes => "sphere_nodes",
     /// Ray-sphere tests.
     SphereTests => "sphere_tests",
     /// Nodes of voxel octrees visited.

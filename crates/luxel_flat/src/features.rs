@@ -51,8 +51,8 @@ features! {
         name: "spheres",
         used: "the scene has spheres", unused: "the scene has no spheres",
         symbols: &["intersect_cloud", "intersect_sphere", "sphere_surface"],
-        bindings: &["octree_nodes", "spheres"],
-        counters: &[Counter::OctreeNodes, Counter::SphereTests],
+        bindings: &["octree_nodes", "spheres", "sphere_nodes", "leaf_spheres"],
+        counters: &[Counter::SphereNodes, Counter::SphereTests],
         nodes: &[],
     }
     /// Triangle meshes and their BVHs.

@@ -20,6 +20,7 @@ pub mod params;
 pub mod path;
 pub mod primitives;
 pub mod scene;
+pub mod sphere_accel;
 pub mod wesl;
 
 pub use constants::*;
@@ -29,5 +30,6 @@ pub use film::{Cascade, FilmPixel};
 pub use heap::Heap;
 pub use params::{CameraRecord, DisplayParams, SceneParams, SliceParams};
 pub use path::{Aov, Path};
-pub use primitives::{BvhNode, Instance, MaterialRecord, OctreeNode, SphereRecord, SvoNode, Triangle};
+pub use primitives::{BvhNode, Instance, LeafSphere, MaterialRecord, OctreeNode, SphereRecord, SvoNode, Triangle};
 pub use scene::{FlatScene, Span};
+pub use sphere_accel::{SPHERE_ACCELS, SphereAccel};

@@ -22,26 +22,29 @@ shared_struct! {
 }
 
 shared_struct! {
-    /// A node of the sphere octree.
+    /// A node of a sphere octree; what its box and its spheres are depends on the octree's kind.
     ///
-    /// A *loose* octree: each sphere belongs to exactly one node, the deepest whose cell its centre lies in and
-    /// whose edge is at least its diameter. The box is tight around the spheres of the subtree, not the cell.
+    /// In the *loose* octree (`SphereAccel::Octree`) each sphere belongs to exactly one node, the deepest whose
+    /// cell its centre lies in and whose edge is at least its diameter; the box is tight around the spheres of
+    /// the subtree, not the cell. In the octree *of cells* (`OctreeBase`, `OctreeSeed`) the box is the cell, and
+    /// a leaf lists every sphere that reaches into it.
     pub struct OctreeNode {
-        /// Corner of smallest coordinates of the subtree's spheres, outset.
+        /// Corner of smallest coordinates.
         pub lo: [f32; 3],
         /// First of eight consecutive children (bit 0 = x, bit 1 = y, bit 2 = z upper half), or `NONE`.
         pub first_child: u32,
         /// Corner of largest coordinates.
         pub hi: [f32; 3],
-        /// First sphere of this node, chained by `SphereRecord::next`, or `NONE`.
+        /// First sphere of this node, or `NONE`: loose, a slot, chained by `SphereRecord::next`; of cells, the
+        /// first of consecutive `LeafSphere`s.
         pub first_sphere: u32,
-        /// Length of the chain.
+        /// Number of spheres in this node.
         pub sphere_count: u32,
         /// Children whose subtree holds a sphere: bit i = child i.
         pub child_mask: u32,
         /// Parent node; `NONE` for the root.
         pub parent: u32,
-        /// Spheres in the whole subtree.
+        /// Spheres in the whole subtree; of cells, sphere references.
         pub subtree_count: u32,
     }
 }
@@ -61,6 +64,24 @@ shared_struct! {
         pub next: u32,
         /// The octree node that holds this sphere, or `NONE`.
         pub node: u32,
+    }
+}
+
+shared_struct! {
+    /// A sphere as a leaf of a structure lists it: a copy, so that a leaf's spheres stand side by side.
+    pub struct LeafSphere {
+        /// Centre.
+        pub center: [f32; 3],
+        /// Radius, positive.
+        pub radius: f32,
+        /// Material slot.
+        pub material: u32,
+        /// The entity's stable id: the primitive id of a hit.
+        pub stable_id: u32,
+        /// The sphere's slot among the `SphereRecord`s.
+        pub slot: u32,
+        /// Always 0.
+        pub reserved: u32,
     }
 }
 
@@ -112,13 +133,13 @@ shared_struct! {
         pub hi: [f32; 3],
         /// The entity's stable id; 0 for the sphere cloud.
         pub stable_id: u32,
-        /// First node of the octree, BVH or SVO in its heap.
+        /// First node of the structure in its heap.
         pub node_first: u32,
-        /// Number of nodes.
+        /// Number of nodes; 1 for spheres without a structure, 0 only in a free slot.
         pub node_count: u32,
         /// First triangle (meshes).
         pub primitive_first: u32,
-        /// Number of triangles.
+        /// Number of triangles, or of sphere slots.
         pub primitive_count: u32,
         /// First material slot.
         pub material_first: u32,
@@ -167,6 +188,15 @@ impl BvhNode {
     #[inline]
     pub fn pack_leaf(first: u32, count: u32) -> u32 {
         count << crate::LEAF_COUNT_SHIFT | first
+    }
+}
+
+impl LeafSphere {
+    /// The copy of the sphere in a slot.
+    #[inline]
+    pub fn of(slot: u32, sphere: &SphereRecord) -> Self {
+        let SphereRecord { center, radius, material, stable_id, .. } = *sphere;
+        Self { center, radius, material, stable_id, slot, reserved: 0 }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The frozen scene: what `bake` publishes and both tracers read.
 use crate::{
-    BvhNode, FeatureSet, Heap, Instance, MaterialRecord, OctreeNode, SceneParams, SphereRecord, SvoNode,
-    Triangle,
+    BvhNode, FeatureSet, Heap, Instance, LeafSphere, MaterialRecord, OctreeNode, SceneParams, SphereAccel,
+    SphereRecord, SvoNode, Triangle,
 };
 
 /// Consecutive records of a heap.
@@ -34,10 +34,16 @@ pub struct FlatScene {
     pub bvh_nodes: Heap<BvhNode>,
     /// Placed objects, by slot.
     pub instances: Heap<Instance>,
+    /// The structure over the spheres, and with it which of the next four heaps are in use.
+    pub sphere_accel: SphereAccel,
+    /// Spheres, by slot; always there.
+    pub spheres: Heap<SphereRecord>,
     /// Nodes of the sphere octree; the root is node 0.
     pub octree_nodes: Heap<OctreeNode>,
-    /// Spheres, by slot.
-    pub spheres: Heap<SphereRecord>,
+    /// Nodes of the BVH over spheres; the root is node 0.
+    pub sphere_nodes: Heap<BvhNode>,
+    /// Spheres in the order of the leaves of the BVH or of the octree of cells.
+    pub leaf_spheres: Heap<LeafSphere>,
     /// Triangles, each mesh in its BVH's leaf order.
     pub triangles: Heap<Triangle>,
     /// Nodes of the voxel octrees; the root of each is its first.

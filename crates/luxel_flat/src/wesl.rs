@@ -3,8 +3,8 @@ use std::fmt::Write as _;
 
 use crate::layout::SharedStruct;
 use crate::{
-    Aov, BvhNode, CameraRecord, Cascade, Counter, DisplayParams, FilmPixel, Instance, MaterialRecord,
-    OctreeNode, Path, SceneParams, SliceParams, SphereRecord, SvoNode, Triangle,
+    Aov, BvhNode, CameraRecord, Cascade, Counter, DisplayParams, FilmPixel, Instance, LeafSphere,
+    MaterialRecord, OctreeNode, Path, SceneParams, SliceParams, SphereRecord, SvoNode, Triangle,
 };
 
 /// Name, fields and size of a shared record.
@@ -24,6 +24,7 @@ pub fn structs() -> Vec<StructRow> {
         row::<BvhNode>(),
         row::<OctreeNode>(),
         row::<SphereRecord>(),
+        row::<LeafSphere>(),
         row::<Triangle>(),
         row::<SvoNode>(),
         row::<Instance>(),
