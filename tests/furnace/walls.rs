@@ -111,9 +111,12 @@ fn v08_light_inside_a_wall_stays_there() {
     room.build(Walls::Voxels, DVec3::ZERO, DQuat::IDENTITY);
     room.heat(0.5);
     room.set(|settings| settings.max_depth = 16);
-    room.look_from(DVec3::new(0.17, 0.18, 0.83));
-    let off = deviation(&room.trace(64), radiance(0.5, 16));
-    assert!(off < ROUNDING, "off by {off:e}");
+    // Inside a face of the walls, an edge, and corners, whose voxels have three sides to the void.
+    for eye in [[0.17, 0.18, 0.83], [0.9, 0.17, -0.9], [0.93, 0.94, 0.95], [-0.99, 0.99, -0.99], [0.7; 3]] {
+        room.look_from(DVec3::from(eye));
+        let off = deviation(&room.trace(64), radiance(0.5, 16));
+        assert!(off < ROUNDING, "eye {eye:?}: off by {off:e}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 use luxel_flat::{FlatScene, Instance, KIND_MESH, KIND_SPHERES};
 use luxel_geom::{Affine, Ray, Real, Vector, spawn, sphere, triangle, voxel};
 
-use crate::{Hit, mesh};
+use crate::{Hit, mesh, volume};
 
 /// A point on a surface, in tracer space.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ impl<R: Real> Surface<R> {
         let local = match instance.kind {
             KIND_SPHERES => sphere_surface(scene, hit, point),
             KIND_MESH => triangle_surface(scene, hit),
-            _ => voxel_surface(hit, point),
+            _ => voxel_surface(instance, hit, point),
         };
         Self::from_local(instance, &object_from_world, &local)
     }
@@ -67,8 +67,9 @@ fn triangle_surface<R: Real>(scene: &FlatScene, hit: &Hit<R>) -> Local<R> {
     Local { point, error, normal: triangle::area_normal::<R>(&vertices) }
 }
 
-fn voxel_surface<R: Real>(hit: &Hit<R>, point: R::Vec3) -> Local<R> {
+fn voxel_surface<R: Real>(instance: &Instance, hit: &Hit<R>, point: R::Vec3) -> Local<R> {
     let face = hit.on.uv[0].to_f32() as u32;
-    let (point, error) = voxel::surface::<R>(point, face);
+    let cell = volume::voxel_cell(hit.on.primitive, instance.levels, point.axis(2).to_f32());
+    let (point, error) = voxel::surface::<R>(point, cell, face);
     Local { point, error, normal: voxel::normal::<R>(face) }
 }

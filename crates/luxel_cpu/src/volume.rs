@@ -76,10 +76,20 @@ pub fn intersect_voxel<R: Real>(
     })
 }
 
-/// Stable id of a voxel: its cell, x lowest. At 2048³ the top bit of z is lost; ids only break ties.
+/// Stable id of a voxel: its cell, x lowest. At 2048³ the top bit of z is lost: see [`voxel_cell`].
 #[inline]
 pub fn voxel_id(cell: [u32; 3], levels: u32) -> u32 {
     cell[0] | cell[1] << levels | cell[2] << (2 * levels)
+}
+
+/// The cell of a voxel with an id. What the id does not tell of z is known from `z`, the coordinate of a point of
+/// the cell up to rounding.
+#[inline]
+pub fn voxel_cell(id: u32, levels: u32, z: f32) -> [u32; 3] {
+    let mask = (1 << levels) - 1;
+    let (low, known) = (id >> (2 * levels), (32 - 2 * levels).min(levels));
+    let lost = ((z - low as f32) / (1 << known) as f32).round().max(0.0) as u32;
+    [id & mask, id >> levels & mask, low | lost << known & mask]
 }
 
 /// The node of an existing child, relative to the volume.
@@ -113,4 +123,22 @@ fn next_child<R: Real>(
         .map(|rank| rank ^ octant)
         .filter(|child| node.child_mask & (1 << child) != 0)
         .find(|child| enters(child_cell(cell, *child), child_edge, ray, counters))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_is_known_from_its_id_and_a_point() {
+        for levels in 0..=MAX_SVO_DEPTH {
+            let top = (1u32 << levels) - 1;
+            for z in [0, 1, top / 2, top / 2 + 1, top].map(|z| z.min(top)) {
+                let cell = [top, top / 3, z];
+                for at in [0.0, 0.5, 1.0, -1e-3, 1.001] {
+                    assert_eq!(voxel_cell(voxel_id(cell, levels), levels, z as f32 + at), cell);
+                }
+            }
+        }
+    }
 }

@@ -66,14 +66,17 @@ pub fn normal<R: Real>(face: u32) -> R::Vec3 {
     R::Vec3::new(on(0), on(1), on(2))
 }
 
-/// A hit point moved onto the plane of its face, and a bound on its error that exceeds the outset of the
-/// neighbouring voxels' boxes: a ray that leaves one voxel does not start inside the next.
+/// A hit point moved onto the plane of its face and, in the other axes, into its cell, with a bound on its error
+/// that exceeds the outset of the neighbouring voxels' boxes: a ray that leaves one voxel does not start inside the
+/// next, and light inside a voxel does not get out past an edge.
 #[inline]
-pub fn surface<R: Real>(point: R::Vec3, face: u32) -> (R::Vec3, R::Vec3) {
-    let snap = |axis: u32| {
-        let c = point.axis(axis as usize);
-        if face / 2 == axis { (c + R::from_f64(0.5)).floor() } else { c }
+pub fn surface<R: Real>(point: R::Vec3, cell: [u32; 3], face: u32) -> (R::Vec3, R::Vec3) {
+    let plane = |axis: usize| R::from_f64(f64::from(cell[axis] + (face & 1)));
+    let within = |axis: usize| {
+        let lo = f64::from(cell[axis]);
+        point.axis(axis).clamped(R::from_f64(lo), R::from_f64(lo + 1.0))
     };
+    let snap = |axis: usize| if face as usize / 2 == axis { plane(axis) } else { within(axis) };
     let snapped = R::Vec3::new(snap(0), snap(1), snap(2));
     (snapped, (snapped.abs() + R::Vec3::splat(R::ONE)) * R::gamma(16))
 }

@@ -122,7 +122,7 @@ fn v08_a_ray_from_the_border_meets_a_voxel_that_it_enters() {
 fn spawned(random: &mut Random, cell: [u32; 3], face: u32, side: f32) -> Ray<f32> {
     let normal = voxel::normal::<f32>(face);
     let on_face = center(cell) + 0.5 * normal + random.point(0.49) * (Vec3::ONE - normal.abs());
-    let (point, error) = voxel::surface::<f32>(on_face, face);
+    let (point, error) = voxel::surface::<f32>(on_face, cell, face);
     let any = random.direction();
     let direction = any * (side * any.dot(normal)).signum();
     Ray::new(spawn::offset_origin::<f32>(point, error, normal, direction), direction)
@@ -146,6 +146,22 @@ fn a_ray_that_leaves_a_voxel_starts_outside_its_neighbours() {
             let outside = ray.origin[axis] < bounds.lo[axis] || ray.origin[axis] > bounds.hi[axis];
             assert!(outside, "{cell:?} {face} {ray:?}");
         }
+    }
+}
+
+#[test]
+fn a_surface_point_lies_on_its_cell() {
+    let mut random = Random::new(5);
+    for _ in 0..100_000 {
+        let cell = random_cell(&mut random);
+        let face = random.below(6);
+        let beyond_the_edge = center(cell) + random.point(0.500_1);
+        let (point, error) = voxel::surface::<f32>(beyond_the_edge, cell, face);
+        let lo = Vec3::from(cell.map(|c| c as f32));
+        assert!(point.cmpge(lo).all() && point.cmple(lo + 1.0).all(), "{cell:?} {face} {point}");
+        let axis = face as usize / 2;
+        assert_eq!(point[axis], lo[axis] + (face & 1) as f32);
+        assert!(error.min_element() > 0.0);
     }
 }
 
