@@ -38,10 +38,10 @@ fn main() -> anyhow::Result<()> {
         engine.bake()?;
         let work = engine.world.resource::<BakeCounters>().since(&before);
         println!(
-            "frame {frame:2}  moved the {name:6}  TLAS builds {}  BVHs built {}  octree updates {}  octree rebuilds {}",
-            work.tlas_builds, work.blas_built, work.octree_updates, work.octree_rebuilds
+            "frame {frame:2}  moved the {name:6}  TLAS builds {}  BVHs built {}  sphere updates {}  sphere rebuilds {}",
+            work.tlas_builds, work.blas_built, work.sphere_updates, work.sphere_rebuilds
         );
-        if work.blas_built + work.svo_built + work.octree_rebuilds > 0 {
+        if work.blas_built + work.svo_built + work.sphere_rebuilds > 0 {
             bail!("moving the {name} rebuilt a structure that it should not touch");
         }
         if frame == 0 || frame == FRAMES - 1 {

@@ -87,6 +87,12 @@ fn scenes_that_make_no_sense() {
         ("(version: 1, entities: [(id: 1, sphere: (radius: 1))])".to_owned(), "camera"),
         ("(version: 999, entities: [])".to_owned(), "version 999"),
         (scene("1", "mesh: 5"), "exclude one another, but 2 are given"),
+        ("(version: 1, sphere_cloud: (accel: Kdtree))".to_owned(), "`OctreeSeed`"),
+        (
+            "(version: 1, sphere_cloud: (max_depth: 21))".to_owned(),
+            "sphere_cloud: max_depth must be in 0 to 20",
+        ),
+        ("(version: 1, sphere_cloud: (min_spheres: 65536))".to_owned(), "min_spheres must be in 0 to 65535"),
     ];
     for (text, says) in cases {
         refuses(Some(("scene.ron", text.as_bytes())), &render("scene.ron"), says);
@@ -133,7 +139,7 @@ fn an_extra_output_that_cannot_be_written_stops_before_the_render() {
 fn options_out_of_range() {
     let scene = scene("1", "");
     let input = Some(("scene.ron", scene.as_bytes()));
-    let cases: [(&[&str], &str); 20] = [
+    let cases: [(&[&str], &str); 23] = [
         (&["--size", "3"], "WIDTHxHEIGHT"),
         (&["--size", "0x4"], "WIDTHxHEIGHT"),
         (&["--size", "99999x4"], "99999x4"),
@@ -154,11 +160,16 @@ fn options_out_of_range() {
         (&["--view", "xray"], "xray"),
         (&["--backend", "fpga"], "fpga"),
         (&["--exposure", "inf"], "--exposure"),
+        (&["--sphere-accel", "kdtree"], "octree-base, octree-seed, octree, bvh"),
+        (&["--sphere-accel", "Bvh"], "--sphere-accel"),
+        (&["--quality", "ultra"], "low, standard, high"),
     ];
     for (options, says) in cases {
         let arguments = [&["render", "scene.ron", "--json"], options].concat();
         refuses(input, &arguments, says);
     }
+    refuses(None, &["info", "scene.ron", "--sphere-accel", "fast"], "fast");
+    refuses(None, &["graph", "scene.ron", "--sphere-accel", ""], "--sphere-accel");
     refuses(None, &["render"], "<FILE>");
     refuses(None, &["frobnicate"], "frobnicate");
     refuses(None, &["render", "a.ron", "b.ron"], "b.ron");

@@ -157,7 +157,81 @@ fn options_without_effect_are_noted_and_stdout_stays_json() {
         noted("-o a.png --exr-precision half"),
         "note: --exr-precision has no effect on a.png: it is for an EXR\n"
     );
-    assert_eq!(noted("-o a.png --tone-map agx --exposure 1 --aov ids"), "");
+    assert_eq!(
+        noted("-o a.png --quality high --max-depth 2"),
+        "note: --quality has no effect on a.png: --spp and --max-depth say all that it stands for\n"
+    );
+    assert_eq!(noted("-o a.png --tone-map agx --exposure 1 --aov ids --sphere-accel bvh"), "");
+    let mut command = luxel(folder.path());
+    command.arg("render").arg(asset("empty.ron")).args(SMALL).args(["--backend", "cpu"]);
+    let outcome = run(command.args(["--sphere-accel", "bvh"]));
+    assert_eq!(outcome.stderr, "note: --sphere-accel has no effect: the scene has no spheres\n");
+}
+
+#[test]
+fn every_example_scene_makes_a_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = ["", "furnace"].map(|below| std::fs::read_dir(asset(below)).unwrap());
+    let scenes = files.into_iter().flatten().map(|entry| entry.unwrap().path());
+    let scenes: Vec<_> =
+        scenes.filter(|path| path.extension().is_some_and(|ending| ending == "ron")).collect();
+    assert!(scenes.len() >= 10, "{scenes:?}");
+    for scene in scenes {
+        let mut command = luxel(folder.path());
+        command.arg("render").arg(&scene).args([
+            "--size",
+            "16x9",
+            "--spp",
+            "1",
+            "--backend",
+            "cpu",
+            "-o",
+            "out.png",
+        ]);
+        let outcome = run(&mut command);
+        assert_eq!((outcome.code, outcome.stderr.as_str()), (Some(0), ""), "{}", scene.display());
+        image::open(folder.path().join("out.png")).unwrap();
+    }
+}
+
+#[test]
+fn the_structure_over_the_spheres_is_chosen_named_and_changes_no_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = asset("hundred_spheres.ron");
+    let ask = |command: &str, more: &[&str]| run(luxel(folder.path()).arg(command).arg(&scene).args(more));
+    let picture = |accel: &str| {
+        let small = ["--size", "64x36", "--quality", "low", "--backend", "cpu", "-o", "out.png", "--json"];
+        let outcome = ask("render", &[&small[..], &["--sphere-accel", accel]].concat());
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        assert_eq!(
+            outcome.stderr.contains("note: octree-seed ends a ray"),
+            accel == "octree-seed",
+            "{}",
+            outcome.stderr
+        );
+        let answer = json(&outcome.stdout);
+        let facts = &answer["sphere_accel"];
+        let expected = if accel == "auto" { facts["name"].as_str().unwrap() } else { accel };
+        assert_eq!((facts["name"].as_str(), &answer["spp"]), (Some(expected), &4.into()));
+        assert!(facts["nodes"].as_u64().unwrap() > 0 && facts["depth"].is_u64() && facts["cut_off"] == false);
+        assert!(!facts["because"].as_str().unwrap().is_empty());
+        let settings = png_text(&folder.path().join("out.png"), "luxel.settings");
+        assert!(settings.contains("max_depth: 4"), "{settings}");
+        image::open(folder.path().join("out.png")).unwrap().into_rgb8().into_raw()
+    };
+    let naive = picture("naive");
+    for accel in ["octree-base", "octree", "bvh", "auto"] {
+        assert_eq!(picture(accel), naive, "{accel}");
+    }
+    picture("octree-seed");
+    let info = ask("info", &[]).succeeded();
+    assert!(info.contains("because a ray among 100 spheres costs about "), "{info}");
+    let info = json(&ask("info", &["--sphere-accel", "bvh", "--json"]).succeeded());
+    assert_eq!(info["sphere_accel"]["name"], "bvh");
+    let seed = ask("info", &["--sphere-accel", "octree-seed"]).succeeded();
+    assert!(seed.contains("its pictures may be wrong"), "{seed}");
+    let graph = ask("graph", &["--sphere-accel", "naive"]).succeeded();
+    assert!(graph.contains("spheres are found by naive, because it was asked for"), "{graph}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Luxel's own structures, as the CPU tracer goes through them.
 use glam::{UVec3, Vec3};
-use luxel_accel::{BvhOptions, RootCell, SphereOctree, Svo, SvoVoxel, build_mesh, build_svo};
+use luxel_accel::{BvhOptions, OctreeOptions, RootCell, SphereOctree, Svo, SvoVoxel, build_mesh, build_svo};
 use luxel_cpu::{Exclusion, cloud, mesh, volume};
 use luxel_flat::{Counters, FlatScene, Heap, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SphereRecord};
 use luxel_geom::{Aabb, Ray, SlabRay};
@@ -56,7 +56,7 @@ impl LuxelOctree {
     pub(crate) fn build(spheres: &[SphereRecord]) -> Self {
         let root = RootCell { center: Vec3::ZERO, half_extent: 1.0 };
         let in_slots: Vec<(u32, SphereRecord)> = (0..).zip(spheres.iter().copied()).collect();
-        let octree = SphereOctree::build(root, &in_slots, 1).unwrap();
+        let octree = SphereOctree::build(root, OctreeOptions::default(), &in_slots, 1).unwrap();
         let node_count = octree.nodes().len() as u32;
         let instance = Instance { kind: KIND_SPHERES, node_count, ..Instance::default() };
         let scene = FlatScene {

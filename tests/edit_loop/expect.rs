@@ -1,11 +1,11 @@
 //! What an edit may rebuild: asserted from the counters of the bake that followed it.
 use glam::DVec3;
 use luxel_bake::BakeCounters;
-use luxel_flat::{FlatScene, Instance};
+use luxel_flat::{FlatScene, Instance, SphereAccel};
 
 use crate::studio::{Action, Edit, Kind};
 
-/// Octree nodes that one sphere may touch: its way up to the root and down again, and blocks of children.
+/// Nodes of the loose octree that one sphere may touch: its way up to the root and down again, and blocks of children.
 const MOST_NODES: u64 = 200;
 
 /// The cost of an edit together with what follows from two snapshots: what differs must have been written, and
@@ -33,14 +33,15 @@ fn boxes(scene: &FlatScene) -> Vec<(usize, [f32; 3], [f32; 3])> {
     live.map(|(slot, instance)| (slot, instance.lo, instance.hi)).collect()
 }
 
-/// The cost of an edit together with what it does to the octree: an edit of that, unless the root cell is another now.
-fn with_octree(edit: &Edit, root_changed: bool) -> BakeCounters {
+/// The cost of an edit together with what it does to the spheres' structure: an edit of that, unless the root cell is
+/// another now.
+fn with_spheres(edit: &Edit, root_changed: bool) -> BakeCounters {
     match (edit.kind, edit.action) {
         (Kind::Sphere, Action::Material) | (Kind::Mesh | Kind::Volume, _) => edit.cost,
-        _ if root_changed => BakeCounters { octree_rebuilds: 1, ..edit.cost },
-        (_, Action::Add) => BakeCounters { octree_inserts: 1, ..edit.cost },
-        (_, Action::Remove) => BakeCounters { octree_removes: 1, ..edit.cost },
-        _ => BakeCounters { octree_updates: 1, ..edit.cost },
+        _ if root_changed => BakeCounters { sphere_rebuilds: 1, ..edit.cost },
+        (_, Action::Add) => BakeCounters { sphere_inserts: 1, ..edit.cost },
+        (_, Action::Remove) => BakeCounters { sphere_removes: 1, ..edit.cost },
+        _ => BakeCounters { sphere_updates: 1, ..edit.cost },
     }
 }
 
@@ -67,30 +68,33 @@ pub(crate) fn check(
     root_changed: bool,
 ) {
     let context = format!("edit {number}, {:?} {:?}", edit.action, edit.kind);
-    let expected = with_snapshots(with_octree(edit, root_changed), before, after);
+    let expected = with_snapshots(with_spheres(edit, root_changed), before, after);
     // A parameter's slot may hold the right radiance from an earlier time.
     let expected = BakeCounters {
-        octree_nodes_touched: work.octree_nodes_touched,
+        sphere_nodes_touched: work.sphere_nodes_touched,
         params_written: work.params_written,
         ..expected
     };
     assert_eq!(*work, expected, "{context}");
     assert!(work.params_written <= edit.cost.params_written, "{context}: {work:?}");
-    let edits_octree = expected.octree_inserts + expected.octree_removes + expected.octree_updates;
-    let most_nodes = if expected.octree_rebuilds > 0 { u64::MAX } else { edits_octree * MOST_NODES };
-    assert!(work.octree_nodes_touched <= most_nodes, "{context}: {work:?}");
+    let edits_spheres = expected.sphere_inserts + expected.sphere_removes + expected.sphere_updates;
+    // The other structures may be built anew by any edit of a sphere.
+    let bounds_nodes = after.sphere_accel == SphereAccel::Octree && expected.sphere_rebuilds == 0;
+    let most_per_edit = if bounds_nodes { MOST_NODES } else { u64::MAX };
+    let most_nodes = (edits_spheres + expected.sphere_rebuilds).saturating_mul(most_per_edit);
+    assert!(work.sphere_nodes_touched <= most_nodes, "{context}: {work:?}");
     check_promises(&context, edit, work);
 }
 
 /// The promises of the issue in its own words; they must not depend on what the snapshots say.
 fn check_promises(context: &str, edit: &Edit, work: &BakeCounters) {
     let structures = work.blas_built + work.blas_freed + work.svo_built + work.svo_freed;
-    let octree = work.octree_inserts + work.octree_removes + work.octree_updates + work.octree_rebuilds;
+    let spheres = work.sphere_inserts + work.sphere_removes + work.sphere_updates + work.sphere_rebuilds;
     let moves_origin = work.anchors_moved > 0;
     match (edit.kind, edit.action) {
         (_, Action::Material) => {
             assert_eq!(
-                (work.tlas_builds, structures, octree, work.transforms_propagated),
+                (work.tlas_builds, structures, spheres, work.transforms_propagated),
                 (0, 0, 0, 0),
                 "{context}"
             );
@@ -99,15 +103,15 @@ fn check_promises(context: &str, edit: &Edit, work: &BakeCounters) {
         }
         (Kind::Mesh | Kind::Volume, Action::Move | Action::Scale) => {
             assert_eq!(
-                (work.tlas_builds, structures, octree, work.materials_written),
+                (work.tlas_builds, structures, spheres, work.materials_written),
                 (1, 0, 0, 0),
                 "{context}"
             );
             assert!(work.instances_written == 1 || moves_origin, "{context}: {work:?}");
         }
-        (Kind::Mesh | Kind::Volume, _) => assert_eq!((work.tlas_builds, octree), (1, 0), "{context}"),
+        (Kind::Mesh | Kind::Volume, _) => assert_eq!((work.tlas_builds, spheres), (1, 0), "{context}"),
         (Kind::Sphere, _) => {
-            assert_eq!((structures, octree), (0, 1), "{context}");
+            assert_eq!((structures, spheres), (0, 1), "{context}");
             // The cloud's own record, when its box or its number of nodes is another.
             assert!(work.instances_written <= 1 || moves_origin, "{context}: {work:?}");
         }

@@ -29,7 +29,7 @@ pub(crate) enum Action {
     Material,
 }
 
-/// An edit, and the work that it must cause, without what follows from the snapshots and from the octree's root cell
+/// An edit, and the work that it must cause, without what follows from the snapshots and from the spheres' root cell
 /// ([`crate::expect`]).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edit {

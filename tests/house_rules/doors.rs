@@ -26,7 +26,7 @@ const ROOMS: [Room; 15] = [
     Room { name: "luxel_film", rooms: &["luxel_geom", "luxel_flat"], guarded: &[] },
     Room { name: "luxel_cpu", rooms: &["luxel_geom", "luxel_flat", "luxel_film"], guarded: &[] },
     Room { name: "luxel_gpu", rooms: &["luxel_flat"], guarded: &["wgpu", "naga"] },
-    Room { name: "luxel_render", rooms: &["luxel_gpu", "luxel_flat", "luxel_film"], guarded: &["bevy_ecs"] },
+    Room { name: "luxel_render", rooms: &["luxel_geom", "luxel_gpu", "luxel_flat", "luxel_film"], guarded: &["bevy_ecs"] },
     Room {
         name: "luxel_engine",
         rooms: &[

@@ -1,14 +1,15 @@
-//! Bounding volume hierarchy: one builder for meshes and the TLAS.
+//! Bounding volume hierarchy: one builder for meshes, the TLAS and spheres.
 //!
 //! Theory: the surface area heuristic with binning, Wald 2007, "On fast Construction of SAH-based Bounding
-//! Volume Hierarchies"; depth-first nodes with skip pointers, Smits 1998, "Efficiency Issues for Ray Tracing".
+//! Volume Hierarchies"; skip pointers, Smits 1998, "Efficiency Issues for Ray Tracing".
 //! Deviations, which make depth and leaf size bounded for every input (robustness.md, A8):
 //! where the heuristic says nothing (centroids in one point, all costs equal, numbers not finite) a node is cut
 //! at its median; below 60 levels, or where the depth bound comes near, likewise; a leaf never holds more than
 //! `MAX_LEAF_SIZE` primitives.
 //!
-//! Invariants, checked by [`Bvh::validate`]: nodes in depth-first order, `skip` beyond the node and equal to the
-//! end of its subtree, every primitive in exactly one leaf, boxes equal to the union of their primitives' boxes.
+//! Invariants, checked by [`Bvh::validate`]: the two children of a node stand side by side behind it, each node but
+//! the root is the child of one node, `skip` is the next node behind a subtree in depth-first order, every primitive
+//! is in exactly one leaf, boxes are equal to the union of their primitives' boxes.
 //!
 //! The result is a pure function of the input: threads share no state, only exact operations (minimum, maximum,
 //! integer sums) are combined across threads, ties go by the primitives' order in the input, and the primitives
@@ -29,6 +30,10 @@ pub(crate) use validate::validate_tree;
 /// No leaf lies deeper below the root, whatever the input.
 pub const MAX_BVH_DEPTH: u32 = 80;
 
+/// Largest number of primitives in a tree: its nodes, fewer than twice as many, are numbered with
+/// `LEAF_COUNT_SHIFT` bits.
+pub(crate) const MAX_PRIMITIVES: usize = 1 << (LEAF_COUNT_SHIFT - 1);
+
 /// How a tree is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhOptions {
@@ -47,7 +52,7 @@ impl Default for BvhOptions {
 /// A tree over primitives that are known by their boxes only.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh {
-    /// Nodes in depth-first order; none for no primitives. `skip` counts from the first node.
+    /// Nodes, the root first; none for no primitives. Children and `skip` count from the first node.
     pub nodes: Vec<BvhNode>,
     /// The input's indices in leaf order: a leaf's primitives are `order[first..first + count]`.
     pub order: Vec<u32>,
@@ -60,11 +65,11 @@ pub struct Bvh {
 /// # Errors
 /// [`AccelError::TooManyPrimitives`].
 pub fn build_bvh(boxes: &[Aabb<f32>], options: &BvhOptions) -> Result<Bvh, AccelError> {
-    if boxes.len() > 1 << LEAF_COUNT_SHIFT {
+    if boxes.len() > MAX_PRIMITIVES {
         return Err(AccelError::TooManyPrimitives { count: boxes.len() });
     }
     let (tree, order) = build::build(boxes, options);
-    Ok(Bvh { nodes: emit::depth_first(tree.as_ref()), order })
+    Ok(Bvh { nodes: emit::emit(tree.as_ref()), order })
 }
 
 impl Bvh {

@@ -3,8 +3,8 @@
 /// Why a structure could not be built or edited, or what is wrong with one.
 #[derive(thiserror::Error, Debug, Clone, PartialEq)]
 pub enum AccelError {
-    /// A leaf's `first` has 28 bits.
-    #[error("{count} primitives in one tree; at most {} are possible", 1u32 << luxel_flat::LEAF_COUNT_SHIFT)]
+    /// Nodes are numbered with 28 bits.
+    #[error("{count} primitives in one tree; at most {} are possible", crate::bvh::MAX_PRIMITIVES)]
     TooManyPrimitives {
         /// Number of primitives given.
         count: usize,

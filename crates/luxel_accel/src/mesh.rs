@@ -10,7 +10,7 @@ use crate::{AccelError, BvhOptions, build_bvh};
 /// A mesh ready to be placed in the flat scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshBvh {
-    /// Nodes in depth-first order; a leaf's primitives are consecutive `triangles`.
+    /// Nodes, the root first; a leaf's primitives are consecutive `triangles`.
     pub nodes: Vec<BvhNode>,
     /// Triangles in leaf order, with material 0.
     pub triangles: Vec<Triangle>,

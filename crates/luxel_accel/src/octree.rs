@@ -4,7 +4,7 @@
 //! node: the deepest whose cell its centre lies in and whose edge is at least its diameter. So no sphere is
 //! listed twice, and nothing depends on how a sphere overlaps a cell. Deviations: nodes carry tight boxes
 //! instead of enlarged cells, so that results are exact whatever the tree's shape; and the tree is lazy: a node
-//! is subdivided only when it holds more than [`MIN_SPHERES`] spheres that could go deeper.
+//! is subdivided only when it holds more than [`OctreeOptions::min_spheres`] spheres that could go deeper.
 //!
 //! A centre exactly on a dividing plane belongs to the upper half. A sphere whose centre lies outside the root
 //! cell stays at the root.
@@ -19,16 +19,29 @@ mod refit;
 mod structure;
 mod validate;
 
-use glam::Vec3;
-use luxel_flat::{FAR, Heap, NONE, OctreeNode, SphereRecord};
-use luxel_geom::{Aabb, sphere};
+use luxel_flat::{Heap, MAX_OCTREE_DEPTH, NONE, OctreeNode, SphereRecord};
+use luxel_geom::Aabb;
 
 use crate::AccelError;
+use crate::slots::{check_free, check_sphere, store};
+use cell::Cell;
 pub use cell::RootCell;
 pub use validate::validate_octree;
 
-/// A node is subdivided when more spheres than this could go deeper.
-pub const MIN_SPHERES: usize = 8;
+/// When a node of an octree is subdivided (seed 1, II.A: "Max Octree Depth", "Min Spheres per Node").
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OctreeOptions {
+    /// Deepest level below the root; 0 is the root alone. Held to at most `MAX_OCTREE_DEPTH`.
+    pub max_depth: u32,
+    /// A node with more spheres than this is subdivided. In the loose octree those count that could go deeper.
+    pub min_spheres: u32,
+}
+
+impl Default for OctreeOptions {
+    fn default() -> Self {
+        Self { max_depth: MAX_OCTREE_DEPTH, min_spheres: 8 }
+    }
+}
 
 /// What the edits of an octree have cost since it was made: evidence that an edit rebuilt nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,10 +60,11 @@ pub struct OctreeWork {
 ///
 /// ```
 /// use glam::Vec3;
-/// use luxel_accel::{RootCell, SphereOctree};
+/// use luxel_accel::{OctreeOptions, RootCell, SphereOctree};
 /// use luxel_flat::SphereRecord;
 ///
-/// let mut octree = SphereOctree::new(RootCell { center: Vec3::ZERO, half_extent: 8.0 });
+/// let root = RootCell { center: Vec3::ZERO, half_extent: 8.0 };
+/// let mut octree = SphereOctree::new(root, OctreeOptions::default());
 /// let sphere = SphereRecord { center: [1.0, 2.0, 3.0], radius: 0.5, ..Default::default() };
 /// octree.insert(0, sphere, 1)?;
 /// octree.update(0, Vec3::ZERO, 0.25, 2)?;
@@ -65,17 +79,19 @@ pub struct SphereOctree {
     /// First nodes of unused blocks.
     free_blocks: Vec<u32>,
     root: RootCell,
+    options: OctreeOptions,
     work: OctreeWork,
 }
 
 impl SphereOctree {
     /// An octree without spheres.
-    pub fn new(root: RootCell) -> Self {
+    pub fn new(root: RootCell, options: OctreeOptions) -> Self {
         Self {
             nodes: Heap::from_records(vec![empty_node(NONE)], 0),
             spheres: Heap::default(),
             free_blocks: Vec::new(),
             root,
+            options,
             work: OctreeWork::default(),
         }
     }
@@ -84,12 +100,17 @@ impl SphereOctree {
     ///
     /// # Errors
     /// [`AccelError::BadSphere`], [`AccelError::SlotTaken`] if two records name one slot.
-    pub fn build(root: RootCell, spheres: &[(u32, SphereRecord)], revision: u64) -> Result<Self, AccelError> {
-        let mut octree = Self::new(root);
+    pub fn build(
+        root: RootCell,
+        options: OctreeOptions,
+        spheres: &[(u32, SphereRecord)],
+        revision: u64,
+    ) -> Result<Self, AccelError> {
+        let mut octree = Self::new(root, options);
         for &(slot, record) in spheres {
-            octree.check_free(slot)?;
+            check_free(&octree.spheres, slot)?;
             check_sphere(slot, record.center.into(), record.radius)?;
-            octree.store(slot, record, revision);
+            store(&mut octree.spheres, slot, record, revision);
             octree.link(0, slot, revision);
         }
         octree.grow_whole(revision);
@@ -109,6 +130,11 @@ impl SphereOctree {
     /// The cell of the root.
     pub fn root(&self) -> RootCell {
         self.root
+    }
+
+    /// When nodes are subdivided.
+    pub fn options(&self) -> OctreeOptions {
+        self.options
     }
 
     /// Number of spheres.
@@ -139,14 +165,8 @@ impl SphereOctree {
         &self.spheres.as_slice()[slot as usize]
     }
 
-    /// The sphere in a slot.
-    fn occupied(&self, slot: u32) -> Result<SphereRecord, AccelError> {
-        let record = self.spheres.as_slice().get(slot as usize).filter(|s| s.radius > 0.0);
-        record.copied().ok_or(AccelError::SlotEmpty { slot })
-    }
-
-    fn check_free(&self, slot: u32) -> Result<(), AccelError> {
-        if self.occupied(slot).is_ok() { Err(AccelError::SlotTaken { slot }) } else { Ok(()) }
+    fn root_cell(&self) -> Cell {
+        self.root.cell(self.options.max_depth)
     }
 }
 
@@ -165,24 +185,14 @@ fn empty_node(parent: u32) -> OctreeNode {
     }
 }
 
-/// The record of a slot without a sphere.
-const FREE_SPHERE: SphereRecord =
-    SphereRecord { center: [0.0; 3], radius: 0.0, material: 0, stable_id: 0, next: NONE, node: NONE };
+/// Deepest level of a node of an octree below its root.
+pub fn octree_depth(nodes: &[OctreeNode]) -> u32 {
+    let parent = |&node: &u32| Some(nodes[node as usize].parent).filter(|&parent| parent != NONE);
+    // One child of each block stands for all; an unused block has no parent.
+    let blocks = (1..nodes.len() as u32).step_by(8);
+    blocks.map(|first| std::iter::successors(Some(first), parent).count() as u32 - 1).max().unwrap_or(0)
+}
 
 fn node_bounds(node: &OctreeNode) -> Aabb<f32> {
     Aabb { lo: node.lo.into(), hi: node.hi.into() }
-}
-
-fn sphere_bounds(record: &SphereRecord) -> Aabb<f32> {
-    sphere::bounds(Vec3::from(record.center), record.radius)
-}
-
-/// Refuses spheres whose box would not be finite or not hold them. A subnormal radius counts as none: a GPU may
-/// flush it to zero.
-fn check_sphere(slot: u32, center: Vec3, radius: f32) -> Result<(), AccelError> {
-    let limit = Vec3::splat(FAR);
-    let bounds = sphere::bounds::<f32>(center, radius);
-    let is_good =
-        radius >= f32::MIN_POSITIVE && bounds.lo.cmpgt(-limit).all() && bounds.hi.cmplt(limit).all();
-    if is_good { Ok(()) } else { Err(AccelError::BadSphere { slot }) }
 }

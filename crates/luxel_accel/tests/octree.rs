@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use luxel_accel::{AccelError, OctreeWork, RootCell, SphereOctree};
+use luxel_accel::{AccelError, OctreeOptions, OctreeWork, RootCell, SphereOctree, octree_depth};
 use luxel_flat::{NONE, SphereRecord};
 use luxel_geom::{Aabb, sphere};
 use luxel_testkit::{Random, spheres};
 use proptest::prelude::*;
 
+const DEFAULT: OctreeOptions = OctreeOptions { max_depth: 20, min_spheres: 8 };
 const UNIT: RootCell = RootCell { center: Vec3::ZERO, half_extent: 1.0 };
 
 fn in_slots(spheres: &[SphereRecord]) -> Vec<(u32, SphereRecord)> {
@@ -16,14 +17,14 @@ fn in_slots(spheres: &[SphereRecord]) -> Vec<(u32, SphereRecord)> {
 }
 
 fn build(root: RootCell, spheres: &[SphereRecord]) -> SphereOctree {
-    let octree = SphereOctree::build(root, &in_slots(spheres), 1).unwrap();
+    let octree = SphereOctree::build(root, DEFAULT, &in_slots(spheres), 1).unwrap();
     octree.validate().unwrap();
     assert_eq!(octree.bounds(), union(spheres));
     octree
 }
 
 fn insert_all(root: RootCell, spheres: &[SphereRecord]) -> SphereOctree {
-    let mut octree = SphereOctree::new(root);
+    let mut octree = SphereOctree::new(root, DEFAULT);
     for (slot, record) in in_slots(spheres) {
         octree.insert(slot, record, 1).unwrap();
     }
@@ -57,7 +58,7 @@ fn difference(before: OctreeWork, after: OctreeWork) -> OctreeWork {
 
 #[test]
 fn an_empty_octree_has_a_root() {
-    let octree = SphereOctree::new(UNIT);
+    let octree = SphereOctree::new(UNIT, DEFAULT);
     octree.validate().unwrap();
     assert!(octree.is_empty() && octree.bounds().is_empty());
     assert_eq!(octree.nodes().len(), 1);
@@ -149,7 +150,7 @@ fn bad_edits_change_nothing() {
     assert_eq!(before.0, octree.nodes().as_slice());
     assert_eq!(before.1, octree.spheres().as_slice());
     let twice = [(1, bad(Vec3::ZERO, 1.0)), (1, bad(Vec3::ZERO, 1.0))];
-    assert_eq!(SphereOctree::build(UNIT, &twice, 1).unwrap_err(), AccelError::SlotTaken { slot: 1 });
+    assert_eq!(SphereOctree::build(UNIT, DEFAULT, &twice, 1).unwrap_err(), AccelError::SlotTaken { slot: 1 });
 }
 
 #[test]
@@ -213,7 +214,7 @@ fn removing_everything_frees_everything() {
 #[test]
 fn ten_thousand_edits_equal_a_fresh_build() {
     let mut random = Random::new(10);
-    let mut octree = SphereOctree::new(UNIT);
+    let mut octree = SphereOctree::new(UNIT, DEFAULT);
     let mut model: BTreeMap<u32, SphereRecord> = BTreeMap::new();
     for edit in 0..10_000u64 {
         let slot = random.below(1500);
@@ -245,7 +246,7 @@ fn ten_thousand_edits_equal_a_fresh_build() {
         }
     }
     let fresh: Vec<(u32, SphereRecord)> = model.iter().map(|(&slot, &record)| (slot, record)).collect();
-    let fresh = SphereOctree::build(UNIT, &fresh, 1).unwrap();
+    let fresh = SphereOctree::build(UNIT, DEFAULT, &fresh, 1).unwrap();
     assert_eq!((octree.bounds(), octree.len()), (fresh.bounds(), fresh.len()));
     let content = |o: &SphereOctree| -> Vec<SphereRecord> {
         let links_aside = |s: &SphereRecord| SphereRecord { next: 0, node: 0, ..*s };
@@ -277,7 +278,7 @@ proptest! {
 
     #[test]
     fn any_edits_leave_a_valid_tree(edits in edits()) {
-        let mut octree = SphereOctree::new(UNIT);
+        let mut octree = SphereOctree::new(UNIT, DEFAULT);
         let center = |c: [i8; 3]| Vec3::from(c.map(f32::from)) / 64.0;
         for edit in edits {
             // Refused edits (slot taken, slot empty) are part of the game.
@@ -289,5 +290,67 @@ proptest! {
             prop_assert_eq!(octree.validate(), Ok(()));
         }
         prop_assert_eq!(octree.bounds(), union(octree.spheres().as_slice().iter().filter(|s| s.radius > 0.0)));
+    }
+}
+
+#[test]
+fn the_options_hold_for_builds_and_edits() {
+    let all = spheres::cloud(12, 2000, 0.9, [0.001, 0.01]);
+    let mut sizes = Vec::new();
+    for (max_depth, min_spheres) in [(0, 0), (1, 0), (3, 0), (3, 4), (5, 1), (20, 40)] {
+        let options = OctreeOptions { max_depth, min_spheres };
+        let built = SphereOctree::build(UNIT, options, &in_slots(&all), 1).unwrap();
+        let mut edited = SphereOctree::new(UNIT, options);
+        for (slot, record) in in_slots(&all) {
+            edited.insert(slot, record, 1).unwrap();
+        }
+        for octree in [&built, &edited] {
+            octree.validate().unwrap();
+            assert_eq!(octree.options(), options);
+            assert!(
+                depth(octree) <= max_depth as usize && octree_depth(octree.nodes().as_slice()) <= max_depth
+            );
+        }
+        sizes.push(built.nodes().len());
+        for slot in 0..2000 {
+            edited.update(slot, Vec3::from(all[slot as usize].center) * 0.5, 0.002, 2).unwrap();
+        }
+        edited.validate().unwrap();
+    }
+    assert_eq!(sizes[..3], [1, 9, 1 + 8 + 64 + 512]);
+    assert!(sizes[3] <= sizes[2] && sizes[4] > sizes[3] && sizes[5] > 9, "{sizes:?}");
+}
+
+#[test]
+fn depth_0_is_the_root_alone() {
+    let options = OctreeOptions { max_depth: 0, min_spheres: 0 };
+    let octree =
+        SphereOctree::build(UNIT, options, &in_slots(&spheres::cloud(1, 99, 0.9, [0.01, 0.1])), 1).unwrap();
+    octree.validate().unwrap();
+    assert_eq!((octree.nodes().len(), octree_depth(octree.nodes().as_slice())), (1, 0));
+}
+
+#[test]
+fn o09_the_path_of_descent_is_the_morton_index() {
+    // The cube [1, 2]³, whose cells of level 20 are 2⁻²⁰ wide; centres use one bit more, all that a single has.
+    let root = RootCell { center: Vec3::splat(1.5), half_extent: 0.5 };
+    let mut random = Random::new(9);
+    let at: Vec<[u32; 3]> = (0..1000).map(|_| [(); 3].map(|()| random.below(1 << 21))).collect();
+    let center = |k: u32| 1.0 + k as f32 / (1u32 << 21) as f32;
+    let all: Vec<_> =
+        (0..).zip(&at).map(|(id, k)| spheres::sphere(Vec3::from(k.map(center)), 1e-9, id)).collect();
+    let options = OctreeOptions { max_depth: 20, min_spheres: 0 };
+    let octree = SphereOctree::build(root, options, &in_slots(&all), 1).unwrap();
+    octree.validate().unwrap();
+    let nodes = octree.nodes().as_slice();
+    for (record, k) in octree.spheres().as_slice().iter().zip(&at) {
+        let mut node = record.node;
+        for level in (0..20).rev() {
+            let parent = nodes[node as usize].parent;
+            let bit = |axis: usize| (k[axis] >> (20 - level) & 1) << axis;
+            assert_eq!(node - nodes[parent as usize].first_child, bit(0) | bit(1) | bit(2), "{k:?} {level}");
+            node = parent;
+        }
+        assert_eq!(node, 0);
     }
 }

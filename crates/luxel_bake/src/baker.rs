@@ -5,7 +5,7 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{LogLevel, ScheduleBuildSettings, SingleThreadedExecutor};
 use bevy_ecs::world::WorldId;
 use luxel_flat::FlatScene;
-use luxel_scene::{Assets, Environment, MeshAsset, RenderSettings, VolumeAsset};
+use luxel_scene::{Assets, Environment, MeshAsset, RenderSettings, SphereCloud, VolumeAsset};
 
 use crate::assets::{Built, build_assets};
 use crate::camera::{View, find_camera};
@@ -22,7 +22,7 @@ use crate::spheres::place_spheres;
 use crate::store::Heaps;
 use crate::tlas::{Tlas, update_tlas};
 use crate::validate::validate;
-use crate::{BakeCounters, BakeError};
+use crate::{BakeCounters, BakeError, SphereTuning};
 
 /// The steps of a run, one after the other.
 ///
@@ -66,6 +66,8 @@ fn ensure_scene_resources(world: &mut World) {
     world.init_resource::<Assets>();
     world.init_resource::<Environment>();
     world.init_resource::<RenderSettings>();
+    world.init_resource::<SphereCloud>();
+    world.init_resource::<SphereTuning>();
 }
 
 /// Keeps the flat scene of one world up to date; see the crate's text.

@@ -1,18 +1,19 @@
-//! The sphere cloud: all visible spheres in one octree, in coordinates of their own.
+//! The sphere cloud: all visible spheres in one structure, in coordinates of their own.
 //!
-//! Invariants: a slot per sphere, kept while it lives; the coordinates' origin and the octree's root cell are
-//! [`CloudFrame::of`] the content. As long as that answer stays, edits go into the octree one by one; when it
-//! changes, the octree is built anew.
+//! Invariants: a slot per sphere, kept while it lives; the coordinates' origin and an octree's root cell are
+//! [`CloudFrame::of`] the content. What was built has a key ([`Plan`]): as long as that stays, edits go into the
+//! structure one by one and are finished together; when it changes, the structure is built anew.
 use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
-use luxel_accel::{AccelError, RootCell, SphereOctree};
+use luxel_accel::{AccelError, RootCell, SphereOptions, SphereStructure};
 use luxel_flat::{Span, SphereRecord};
+use luxel_scene::SphereCloud;
 
 use crate::identities::Identities;
 use crate::journal::Journal;
 use crate::lattice::{CloudFrame, Extent};
-use crate::{BakeError, SpanAllocator};
+use crate::{BakeError, SpanAllocator, SphereTuning};
 
 /// A sphere in world space, as its entity says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,10 +52,21 @@ struct Edit {
     new: Option<Ball>,
 }
 
+/// Everything that a structure depends on besides its spheres: the key of what was built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Plan {
+    options: SphereOptions,
+    generation: u64,
+    frame: CloudFrame,
+}
+
 /// The spheres of the scene.
 #[derive(Resource)]
 pub(crate) struct Cloud {
-    octree: SphereOctree,
+    structure: SphereStructure,
+    /// What `structure` was built for; `None` if it is not to be trusted.
+    plan: Option<Plan>,
+    /// The coordinates that `structure` is in.
     frame: CloudFrame,
     balls: EntityHashMap<(u32, Ball)>,
     slots: SpanAllocator,
@@ -64,10 +76,10 @@ pub(crate) struct Cloud {
 
 impl Default for Cloud {
     fn default() -> Self {
-        let frame = CloudFrame::of(None);
         Self {
-            octree: SphereOctree::new(root(&frame)),
-            frame,
+            structure: SphereStructure::default(),
+            plan: None,
+            frame: CloudFrame::of(None),
             balls: EntityHashMap::default(),
             slots: SpanAllocator::default(),
             extent: None,
@@ -77,9 +89,9 @@ impl Default for Cloud {
 }
 
 impl Cloud {
-    /// The octree over the spheres.
-    pub(crate) fn octree(&self) -> &SphereOctree {
-        &self.octree
+    /// The structure over the spheres.
+    pub(crate) fn structure(&self) -> &SphereStructure {
+        &self.structure
     }
 
     /// Origin of the cloud's coordinates in world space.
@@ -97,26 +109,29 @@ impl Cloud {
         self.identities.shared()
     }
 
-    /// Makes the spheres of some entities what they are now (`None` for no sphere).
+    /// Makes the spheres of some entities what they are now (`None` for no sphere), and the structure what is wished
+    /// for.
     pub(crate) fn update(
         &mut self,
         balls: impl IntoIterator<Item = (Entity, Option<Ball>)>,
+        wish: &SphereCloud,
+        tuning: &SphereTuning,
         journal: &mut Journal,
     ) -> Result<(), BakeError> {
         let mut edits = Vec::new();
         for (entity, ball) in balls {
             edits.extend(self.note(entity, ball)?);
         }
-        if edits.is_empty() {
-            return Ok(());
-        }
         self.refresh_extent(&edits);
-        let frame = CloudFrame::of(self.extent.as_ref());
-        if frame == self.frame {
-            edits.iter().try_for_each(|edit| self.apply(edit, journal))?;
+        let (options, generation) = (tuning.options(wish), tuning.generation);
+        let plan = Plan { options, generation, frame: CloudFrame::of(self.extent.as_ref()) };
+        // While it is being changed the structure is nobody's; after an error the next run builds it anew.
+        if self.plan.take() == Some(plan) {
+            self.apply_all(&edits, journal)?;
         } else {
-            self.rebuild(frame, journal)?;
+            self.rebuild(plan, journal)?;
         }
+        self.plan = Some(plan);
         for edit in edits.iter().filter(|edit| edit.new.is_none()) {
             self.slots.release(Span { first: edit.slot, count: 1 });
         }
@@ -124,7 +139,7 @@ impl Cloud {
     }
 
     /// Notes an entity's sphere; `None` if nothing changed. The slot of a sphere that goes is given back
-    /// later, once the octree has let go of it.
+    /// later, once the structure has let go of it.
     fn note(&mut self, entity: Entity, new: Option<Ball>) -> Result<Option<Edit>, BakeError> {
         let (slot, old) =
             self.balls.get(&entity).map_or((None, None), |(slot, ball)| (Some(*slot), Some(*ball)));
@@ -145,6 +160,9 @@ impl Cloud {
 
     /// The extent of the content. Looks at all spheres only if one left the border.
     fn refresh_extent(&mut self, edits: &[Edit]) {
+        if edits.is_empty() {
+            return;
+        }
         let rests_on = |ball: &Ball| self.extent.is_none_or(|extent| extent.rests_on(&ball.extent()));
         self.extent = if edits.iter().filter_map(|edit| edit.old.as_ref()).any(rests_on) {
             Extent::of(self.balls.values().map(|(_, ball)| ball.extent()))
@@ -154,45 +172,48 @@ impl Cloud {
         };
     }
 
-    fn apply(&mut self, edit: &Edit, journal: &mut Journal) -> Result<(), BakeError> {
-        let before = self.octree.work().nodes_touched;
-        self.apply_to_octree(edit, journal)?;
-        journal.counters.octree_nodes_touched += self.octree.work().nodes_touched - before;
+    /// Takes in a batch of edits; what they deferred is done at its end.
+    fn apply_all(&mut self, edits: &[Edit], journal: &mut Journal) -> Result<(), AccelError> {
+        let before = self.structure.work().nodes_touched;
+        edits.iter().try_for_each(|edit| self.apply(edit, journal))?;
+        self.structure.finish(journal.revision())?;
+        journal.counters.sphere_nodes_touched += self.structure.work().nodes_touched - before;
         Ok(())
     }
 
-    fn apply_to_octree(&mut self, edit: &Edit, journal: &mut Journal) -> Result<(), AccelError> {
+    fn apply(&mut self, edit: &Edit, journal: &mut Journal) -> Result<(), AccelError> {
         let (slot, revision) = (edit.slot, journal.revision());
         let counters = &mut journal.counters;
         match (edit.old, edit.new) {
             (Some(old), Some(new)) if old.stable_id == new.stable_id => {
-                self.octree.update(slot, new.center_in(&self.frame), new.radius as f32, revision)?;
-                self.octree.set_material(slot, new.material, revision)?;
-                counters.octree_updates += 1;
+                self.structure.update(slot, new.center_in(&self.frame), new.radius as f32, revision)?;
+                self.structure.set_material(slot, new.material, revision)?;
+                counters.sphere_updates += 1;
             }
             (old, new) => {
                 if old.is_some() {
-                    self.octree.remove(slot, revision)?;
-                    counters.octree_removes += 1;
+                    self.structure.remove(slot, revision)?;
+                    counters.sphere_removes += 1;
                 }
                 if let Some(ball) = new {
-                    self.octree.insert(slot, ball.record(&self.frame), revision)?;
-                    counters.octree_inserts += 1;
+                    self.structure.insert(slot, ball.record(&self.frame), revision)?;
+                    counters.sphere_inserts += 1;
                 }
             }
         }
         Ok(())
     }
 
-    /// Builds the octree of all spheres in other coordinates. Slots stay.
-    fn rebuild(&mut self, frame: CloudFrame, journal: &mut Journal) -> Result<(), BakeError> {
+    /// Builds a structure of all spheres. Slots stay.
+    fn rebuild(&mut self, plan: Plan, journal: &mut Journal) -> Result<(), BakeError> {
         let mut spheres: Vec<_> =
-            self.balls.values().map(|(slot, ball)| (*slot, ball.record(&frame))).collect();
+            self.balls.values().map(|(slot, ball)| (*slot, ball.record(&plan.frame))).collect();
         spheres.sort_unstable_by_key(|(slot, _)| *slot);
-        self.octree = SphereOctree::build(root(&frame), &spheres, journal.revision())?;
-        self.frame = frame;
-        journal.counters.octree_rebuilds += 1;
-        journal.counters.octree_nodes_touched += self.octree.work().nodes_touched;
+        let root = root(&plan.frame);
+        self.structure = SphereStructure::build(plan.options, root, &spheres, journal.revision())?;
+        self.frame = plan.frame;
+        journal.counters.sphere_rebuilds += 1;
+        journal.counters.sphere_nodes_touched += self.structure.work().nodes_touched;
         Ok(())
     }
 }

@@ -38,16 +38,16 @@ counters! {
     svo_built,
     /// Voxel octrees given up because nothing uses their volume any more.
     svo_freed,
-    /// Spheres put into the octree, one at a time.
-    octree_inserts,
-    /// Spheres taken out of the octree.
-    octree_removes,
-    /// Spheres moved, resized or given another material slot inside the octree.
-    octree_updates,
-    /// Octrees built anew from all spheres, because the cloud's anchor or root cell changed.
-    octree_rebuilds,
-    /// Octree nodes written.
-    octree_nodes_touched,
+    /// Spheres put into the cloud's structure, one at a time.
+    sphere_inserts,
+    /// Spheres taken out of it.
+    sphere_removes,
+    /// Spheres moved, resized or given another material slot inside it.
+    sphere_updates,
+    /// Structures built anew from all spheres, because the cloud's anchor, root cell, options or generation changed.
+    sphere_rebuilds,
+    /// Nodes of the structure that were written.
+    sphere_nodes_touched,
     /// Moves of tracer space's origin; each rewrites every instance.
     anchors_moved,
     /// Instance records that got a new value.

@@ -45,7 +45,7 @@ pub(crate) fn find_features(
     mut journal: Journal,
 ) {
     let records = &heaps.materials.records.heap;
-    let (instance_records, spheres) = (&heaps.instances.heap, cloud.octree().spheres());
+    let (instance_records, spheres) = (&heaps.instances.heap, cloud.structure().spheres());
     let key = [
         (records.revision(), records.len()),
         (instance_records.revision(), instance_records.len()),
@@ -82,8 +82,8 @@ fn of_objects(
         slots.fold(FeatureSet::NONE, |set, slot| set.union(of_material(&materials[slot as usize])))
     };
     let mut set = FeatureSet::NONE;
-    if !cloud.octree().is_empty() {
-        let live = cloud.octree().spheres().as_slice().iter().filter(|sphere| sphere.radius > 0.0);
+    if !cloud.structure().is_empty() {
+        let live = cloud.structure().spheres().as_slice().iter().filter(|sphere| sphere.radius > 0.0);
         set = set.with(Feature::Spheres, true).union(of_slots(&mut live.map(|sphere| sphere.material)));
     }
     for mesh in records.iter().filter(|record| record.kind == KIND_MESH && record.node_count > 0) {

@@ -167,11 +167,15 @@ impl Structures<'_> {
     }
 
     fn cloud(&self) -> Option<Source> {
-        let octree = self.cloud.octree();
-        let header =
-            Instance { kind: KIND_SPHERES, node_count: octree.nodes().len() as u32, ..Instance::default() };
+        let structure = self.cloud.structure();
+        let header = Instance {
+            kind: KIND_SPHERES,
+            node_count: structure.node_count(),
+            primitive_count: structure.spheres().len() as u32,
+            ..Instance::default()
+        };
         let placement =
-            Placement::new(DAffine3::from_translation(self.cloud.anchor()), octree.bounds()).ok()?;
+            Placement::new(DAffine3::from_translation(self.cloud.anchor()), structure.bounds()).ok()?;
         Some(Source { placement, header, volume: None })
     }
 }

@@ -7,10 +7,10 @@
 //! A [`Baker`] is a schedule of systems (the sets are [`BakeSet`]s). One system asks bevy_ecs's change
 //! detection which objects were touched; the others make what they keep of a touched object equal to what
 //! it says now. Work that depends on several objects has a key: the TLAS the boxes that it was built over,
-//! the octree its root cell, the records their origin, an asset's structure the asset.
+//! the sphere cloud its options and root cell, the records their origin, an asset's structure the asset.
 //!
 //! ▪ Invariants. There is no dirty flag: a changed component or a changed key is the only trigger. What is
-//! published is a function of the world alone, but for slots and the shape of the octree: an edited world
+//! published is a function of the world alone, but for slots and the shape of the spheres' structure: an edited world
 //! and a fresh one look the same to every ray. A problem of one object never touches another: it is left
 //! out with a warning ([`BakeWarning`]), or named in a [`BakeError`] that goes away with its cause.
 //! [`BakeCounters`] say what was done.
@@ -37,7 +37,7 @@
 //! let second = baker.run(&mut world)?;
 //! let work = world.resource::<BakeCounters>().since(&before);
 //! assert!(second.revision > first.revision);
-//! assert_eq!((work.octree_updates, work.materials_written), (1, 0));
+//! assert_eq!((work.sphere_updates, work.materials_written), (1, 0));
 //! # Ok::<(), luxel_bake::BakeError>(())
 //! ```
 mod assets;
@@ -62,6 +62,7 @@ mod spans;
 mod spheres;
 mod store;
 mod tlas;
+mod tuning;
 mod validate;
 mod volumes;
 
@@ -70,5 +71,6 @@ pub use counters::BakeCounters;
 pub use error::BakeError;
 pub use journal::{BakeWarning, Disabled};
 pub use objects::Shown;
-pub use report::{BakeReport, MeshFacts, VolumeFacts};
+pub use report::{BakeReport, MeshFacts, SphereFacts, VolumeFacts};
 pub use spans::SpanAllocator;
+pub use tuning::SphereTuning;

@@ -64,7 +64,10 @@ fn differs(new: &FlatScene, last: &FlatScene) -> bool {
         || new.anchor != last.anchor
         || heap(&new.bvh_nodes, &last.bvh_nodes, since)
         || heap(&new.instances, &last.instances, since)
+        || new.sphere_accel != last.sphere_accel
         || heap(&new.octree_nodes, &last.octree_nodes, since)
+        || heap(&new.sphere_nodes, &last.sphere_nodes, since)
+        || heap(&new.leaf_spheres, &last.leaf_spheres, since)
         || heap(&new.spheres, &last.spheres, since)
         || heap(&new.triangles, &last.triangles, since)
         || heap(&new.svo_nodes, &last.svo_nodes, since)
@@ -82,12 +85,16 @@ impl Parts<'_> {
 
     fn snapshot(&self, revision: u64) -> Result<FlatScene, BakeError> {
         let Heaps { bvh_nodes, triangles, svo_nodes, instances, materials } = &*self.heaps;
+        let cloud = self.cloud.structure();
         Ok(FlatScene {
             params: self.params()?,
             bvh_nodes: bvh_nodes.heap.clone(),
             instances: instances.heap.clone(),
-            octree_nodes: self.cloud.octree().nodes().clone(),
-            spheres: self.cloud.octree().spheres().clone(),
+            sphere_accel: cloud.options().accel,
+            spheres: cloud.spheres().clone(),
+            octree_nodes: cloud.octree_nodes().clone(),
+            sphere_nodes: cloud.sphere_nodes().clone(),
+            leaf_spheres: cloud.leaf_spheres().clone(),
             triangles: triangles.heap.clone(),
             svo_nodes: svo_nodes.heap.clone(),
             materials: materials.records.heap.clone(),

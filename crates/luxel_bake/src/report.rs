@@ -1,10 +1,12 @@
 //! What `luxel info` tells of a baked scene: counts, bytes, depths, and what is drawn otherwise than asked.
 use bevy_ecs::prelude::World;
-use luxel_flat::{FlatScene, KIND_MESH, KIND_VOXELS};
+use luxel_accel::SphereStructure;
+use luxel_flat::{FlatScene, KIND_MESH, KIND_SPHERES, KIND_VOXELS};
 use luxel_scene::{MeshAsset, VolumeAsset};
 use serde::Serialize;
 
 use crate::assets::Built;
+use crate::cloud::Cloud;
 use crate::journal::Complaints;
 use crate::materials::MaterialSlots;
 use crate::publish::Published;
@@ -24,8 +26,8 @@ pub struct BakeReport {
     pub materials: u64,
     /// Deepest level of the TLAS; the root is level 0.
     pub tlas_depth: u32,
-    /// Deepest level of the sphere octree.
-    pub octree_depth: u32,
+    /// The structure over the spheres.
+    pub sphere_cloud: SphereFacts,
     /// Meshes in use.
     pub meshes: Vec<MeshFacts>,
     /// Volumes in use.
@@ -34,6 +36,21 @@ pub struct BakeReport {
     pub bytes: Vec<(&'static str, u64)>,
     /// What is drawn otherwise than the scene says, one line each.
     pub warnings: Vec<String>,
+}
+
+/// Facts about the structure over the spheres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SphereFacts {
+    /// Which structure, by its name in [`luxel_flat::SPHERE_ACCELS`]; empty before anything was published.
+    pub name: &'static str,
+    /// Nodes; 0 without spheres.
+    pub nodes: u32,
+    /// Deepest level; the root is level 0.
+    pub depth: u32,
+    /// Bytes of its heaps: spheres, nodes and leaves.
+    pub bytes: u64,
+    /// True if nodes stayed leaves that should have been divided, because references ran out.
+    pub cut_off: bool,
 }
 
 /// Facts about a mesh in use.
@@ -81,7 +98,7 @@ pub(crate) fn report(world: &World) -> BakeReport {
         instanced_triangles: live(KIND_MESH).map(|mesh| u64::from(mesh.primitive_count)).sum(),
         materials: world.get_resource::<MaterialSlots>().map_or(0, |slots| slots.len() as u64),
         tlas_depth: luxel_accel::depth(scene.tlas()),
-        octree_depth: octree_depth(scene),
+        sphere_cloud: sphere_facts(world, scene),
         meshes: meshes(world, scene),
         volumes: volumes(world),
         bytes: bytes(scene),
@@ -114,17 +131,22 @@ fn volumes(world: &World) -> Vec<VolumeFacts> {
         .collect()
 }
 
-fn octree_depth(scene: &FlatScene) -> u32 {
-    let nodes = scene.octree_nodes.as_slice();
-    let mut deepest = 0;
-    let mut open = if nodes.is_empty() { Vec::new() } else { vec![(0u32, 0)] };
-    while let Some((node, depth)) = open.pop() {
-        deepest = deepest.max(depth);
-        let node = nodes[node as usize];
-        let children = (0..8).filter(|child| node.child_mask & (1 << child) != 0);
-        open.extend(children.map(|child| (node.first_child + child, depth + 1)));
+fn sphere_facts(world: &World, scene: &FlatScene) -> SphereFacts {
+    let cloud = scene.instances.as_slice().iter().find(|i| i.kind == KIND_SPHERES && i.node_count > 0);
+    let heaps = [
+        scene.spheres.bytes(),
+        scene.octree_nodes.bytes(),
+        scene.sphere_nodes.bytes(),
+        scene.leaf_spheres.bytes(),
+    ];
+    let structure = world.get_resource::<Cloud>().map(Cloud::structure);
+    SphereFacts {
+        name: scene.sphere_accel.name(),
+        nodes: cloud.map_or(0, |cloud| cloud.node_count),
+        depth: structure.map_or(0, SphereStructure::depth),
+        bytes: heaps.iter().sum::<usize>() as u64,
+        cut_off: structure.is_some_and(SphereStructure::is_cut_off),
     }
-    deepest
 }
 
 fn bytes(scene: &FlatScene) -> Vec<(&'static str, u64)> {
@@ -133,6 +155,8 @@ fn bytes(scene: &FlatScene) -> Vec<(&'static str, u64)> {
         ("instances", scene.instances.bytes()),
         ("octree_nodes", scene.octree_nodes.bytes()),
         ("spheres", scene.spheres.bytes()),
+        ("sphere_nodes", scene.sphere_nodes.bytes()),
+        ("leaf_spheres", scene.leaf_spheres.bytes()),
         ("triangles", scene.triangles.bytes()),
         ("svo_nodes", scene.svo_nodes.bytes()),
         ("materials", scene.materials.bytes()),

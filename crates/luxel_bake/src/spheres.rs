@@ -3,14 +3,14 @@
 //! A sphere stays a sphere: under a scale that differs between the axes it takes the largest, with a warning.
 use bevy_ecs::prelude::*;
 use glam::DVec3;
-use luxel_scene::GlobalTransform;
+use luxel_scene::{GlobalTransform, SphereCloud};
 
-use crate::Disabled;
 use crate::cloud::{Ball, Cloud};
 use crate::journal::{BakeWarning, Journal, Refusal, Topic};
 use crate::lattice::{FARTHEST, LARGEST};
 use crate::materials::MaterialSlots;
 use crate::objects::{Object, ObjectItem, Touched};
+use crate::{Disabled, SphereTuning};
 
 /// Axis lengths that differ by a smaller share count as equal: what a chain of rotations rounds off.
 const UNIFORM: f64 = 1e-9;
@@ -20,6 +20,8 @@ pub(crate) fn place_spheres(
     touched: Res<Touched>,
     objects: Query<Object>,
     slots: Res<MaterialSlots>,
+    wish: Res<SphereCloud>,
+    tuning: Res<SphereTuning>,
     mut cloud: ResMut<Cloud>,
     mut journal: Journal,
 ) {
@@ -33,7 +35,7 @@ pub(crate) fn place_spheres(
         journal.warning(entity, Topic::SphereScale, warning);
         balls.push((entity, ball));
     }
-    let error = cloud.update(balls, &mut journal).err();
+    let error = cloud.update(balls, &wish, &tuning, &mut journal).err();
     journal.error(Entity::PLACEHOLDER, Topic::Sphere, error);
 }
 

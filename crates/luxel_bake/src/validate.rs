@@ -11,14 +11,14 @@ use crate::cloud::Cloud;
 use crate::store::Heaps;
 use crate::tlas::{Tlas, live_instances};
 
-/// Checks the octree, the TLAS, and the structure of every asset in use.
+/// Checks the sphere cloud, the TLAS, and the structure of every asset in use.
 pub(crate) fn validate(world: &World) -> Result<(), BakeError> {
     let (Some(heaps), Some(cloud), Some(tlas)) =
         (world.get_resource::<Heaps>(), world.get_resource::<Cloud>(), world.get_resource::<Tlas>())
     else {
         return Ok(());
     };
-    cloud.octree().validate()?;
+    cloud.structure().validate()?;
     let nodes: &[BvhNode] = &heaps.bvh_nodes.heap.as_slice()[tlas.nodes().range()];
     validate_tlas(nodes, &live_instances(heaps))?;
     validate_meshes(world, heaps)?;

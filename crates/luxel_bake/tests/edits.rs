@@ -55,7 +55,7 @@ fn a_moved_volume_touches_the_tlas_alone() {
         world.get_mut::<Transform>(scene.lantern).unwrap().rotation = DQuat::from_rotation_y(0.5)
     });
     assert_eq!((work.tlas_builds, work.instances_written, work.svo_built), (1, 1, 0));
-    assert_eq!((work.octree_nodes_touched, work.materials_written), (0, 0));
+    assert_eq!((work.sphere_nodes_touched, work.materials_written), (0, 0));
 }
 
 #[test]
@@ -73,8 +73,8 @@ fn one_of_ten_thousand_spheres_moves_without_a_rebuild() {
     for i in [17, 4_000, 9_999] {
         let to = at(i as u64) * 0.5 + DVec3::splat(0.125);
         let (scene, work) = studio.edit(moved(spheres[i], to));
-        assert_eq!((work.octree_updates, work.octree_rebuilds, work.octree_inserts), (1, 0, 0));
-        assert!(work.octree_nodes_touched < 150, "{}", work.octree_nodes_touched);
+        assert_eq!((work.sphere_updates, work.sphere_rebuilds, work.sphere_inserts), (1, 0, 0));
+        assert!(work.sphere_nodes_touched < 150, "{}", work.sphere_nodes_touched);
         assert_eq!((work.materials_written, work.blas_built, work.publishes), (0, 0, 1));
         // At most the sphere itself and its neighbours in two chains.
         let pages = scene.spheres.newer_than(last);
@@ -118,19 +118,19 @@ fn a_sphere_appears_changes_and_goes() {
     let (_, work) = studio.edit(|world| {
         ball = luxel_scene::spawn(world, (Sphere { radius: 0.25 }, Transform::at(DVec3::Y)));
     });
-    assert_eq!((work.octree_inserts, work.octree_rebuilds, work.materials_written), (1, 0, 1));
+    assert_eq!((work.sphere_inserts, work.sphere_rebuilds, work.materials_written), (1, 0, 1));
     let (_, work) = studio.edit(|world| world.get_mut::<Sphere>(ball).unwrap().radius = 0.5);
-    assert_eq!((work.octree_updates, work.octree_inserts, work.octree_rebuilds), (1, 0, 0));
+    assert_eq!((work.sphere_updates, work.sphere_inserts, work.sphere_rebuilds), (1, 0, 0));
     let (_, work) = studio.edit(|world| {
         world.get_mut::<Visibility>(scene.ball).map(|_| ()).unwrap_or_else(|| {
             world.entity_mut(scene.ball).insert(Visibility(false));
         })
     });
-    assert_eq!((work.octree_removes, work.materials_written), (1, 0));
+    assert_eq!((work.sphere_removes, work.materials_written), (1, 0));
     let (_, work) = studio.edit(|world| world.get_mut::<Visibility>(scene.ball).unwrap().0 = true);
-    assert_eq!((work.octree_inserts, work.materials_written), (1, 0));
+    assert_eq!((work.sphere_inserts, work.materials_written), (1, 0));
     let (after, work) = studio.edit(|world| _ = world.despawn(ball));
-    assert_eq!((work.octree_removes, work.octree_rebuilds), (1, 0));
+    assert_eq!((work.sphere_removes, work.sphere_rebuilds), (1, 0));
     assert_eq!(visible(&after), before);
     assert_eq!(after.materials.len(), studio.fresh().materials.len(), "slots are given back");
 }
@@ -141,9 +141,9 @@ fn the_octree_is_rebuilt_when_the_cloud_grows_or_shrinks() {
     let before = visible(&studio.run());
     let home = studio.world.get::<Transform>(scene.ball).unwrap().translation;
     let (_, work) = studio.edit(moved(scene.ball, DVec3::X * 1000.0));
-    assert_eq!((work.octree_rebuilds, work.octree_updates, work.materials_written), (1, 0, 0));
+    assert_eq!((work.sphere_rebuilds, work.sphere_updates, work.materials_written), (1, 0, 0));
     let (after, work) = studio.edit(moved(scene.ball, home));
-    assert_eq!((work.octree_rebuilds, work.octree_updates), (1, 0));
+    assert_eq!((work.sphere_rebuilds, work.sphere_updates), (1, 0));
     assert_eq!(visible(&after), before);
 }
 
@@ -195,7 +195,7 @@ fn a_camera_that_moves_a_little_leaves_the_instances_alone() {
     let (_, work) = studio.edit(moved(camera, DVec3::new(500.0, 0.0, 10.0)));
     assert_eq!((work.anchors_moved, work.instances_written, work.tlas_builds), (1, 4, 1));
     assert_eq!(
-        (work.octree_nodes_touched, work.blas_built),
+        (work.sphere_nodes_touched, work.blas_built),
         (0, 0),
         "structures have coordinates of their own"
     );
@@ -226,12 +226,12 @@ fn a_moved_parent_moves_its_subtree_only() {
         world.entity_mut(scene.ball).insert(ChildOf(group));
     });
     let (_, work) = studio.edit(moved(group, DVec3::Y * 0.5));
-    assert_eq!((work.transforms_propagated, work.octree_updates, work.blas_built), (3, 1, 0));
+    assert_eq!((work.transforms_propagated, work.sphere_updates, work.blas_built), (3, 1, 0));
     let (hidden, work) = studio.edit(|world| _ = world.entity_mut(group).insert(Visibility(false)));
-    assert_eq!((work.transforms_propagated, work.octree_removes, work.tlas_builds), (0, 1, 1));
+    assert_eq!((work.transforms_propagated, work.sphere_removes, work.tlas_builds), (0, 1, 1));
     assert_eq!(visible(&hidden), visible(&studio.fresh()));
     studio.edit(|world| _ = world.entity_mut(scene.ball).remove::<ChildOf>());
     let (_, work) = studio.edit(|world| _ = world.despawn(group));
-    assert_eq!((work.octree_removes, work.blas_freed), (0, 0));
+    assert_eq!((work.sphere_removes, work.blas_freed), (0, 0));
     assert_eq!(visible(&studio.run()), visible(&studio.fresh()));
 }

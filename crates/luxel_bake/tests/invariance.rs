@@ -8,7 +8,8 @@ use glam::{DQuat, DVec3, Vec3};
 use luxel_flat::FlatScene;
 use luxel_geom::rng;
 use luxel_scene::{
-    Material, MeshInstance, MeshSource, Sphere, Transform, Visibility, VolumeSource, VoxelVolume, spawn,
+    Material, MeshInstance, MeshSource, Sphere, SphereAccel, SphereCloud, Transform, Visibility,
+    VolumeSource, VoxelVolume, spawn,
 };
 
 /// Random numbers of an edit, in [0, 1).
@@ -20,8 +21,9 @@ fn random(edit: u32) -> [f64; 8] {
 /// X01: every root and the camera moved by (2²⁰, 2²⁰, 2²⁰) changes no bit of any heap.
 #[test]
 fn a_moved_world_is_the_same_world() {
-    let build = |offset: DVec3| {
+    let build = |offset: DVec3, accel: SphereAccel| {
         let mut studio = Studio::empty();
+        studio.world.insert_resource(SphereCloud { accel, ..SphereCloud::default() });
         let scene = OneOfEach::new(&mut studio);
         let group = spawn(
             &mut studio.world,
@@ -42,20 +44,23 @@ fn a_moved_world_is_the_same_world() {
         studio.run()
     };
     let offset = DVec3::splat(f64::from(1 << 20));
-    let (here, there) = (build(DVec3::ZERO), build(offset));
-    assert_eq!(DVec3::from(there.anchor), DVec3::from(here.anchor) + offset);
-    assert_eq!(bits(&here), bits(&there));
+    for (name, accel) in SphereAccel::NAMES {
+        let (here, there) = (build(DVec3::ZERO, *accel), build(offset, *accel));
+        assert_eq!(DVec3::from(there.anchor), DVec3::from(here.anchor) + offset);
+        assert_eq!(bits(&here), bits(&there), "{name}");
+    }
 }
 
 /// Everything but the anchor, floats as text in full (−0 and 0 differ).
 fn bits(scene: &FlatScene) -> String {
     format!(
-        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
+        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
         scene.params,
         scene.bvh_nodes.as_slice(),
         scene.instances.as_slice(),
         scene.octree_nodes.as_slice(),
         scene.spheres.as_slice(),
+        (scene.sphere_accel, scene.sphere_nodes.as_slice(), scene.leaf_spheres.as_slice()),
         scene.triangles.as_slice(),
         scene.svo_nodes.as_slice(),
         scene.materials.as_slice(),
@@ -90,10 +95,17 @@ fn the_clouds_box_holds_its_spheres() {
     }
 }
 
-/// 2,000 random edits; now and then everything is compared with a fresh bake of the same world.
+/// 2,000 random edits under every structure; now and then everything is compared with a fresh bake of the same world.
 #[test]
 fn edited_equals_fresh() {
+    for (name, accel) in SphereAccel::NAMES {
+        assert_edited_equals_fresh(name, SphereCloud { accel: *accel, ..SphereCloud::default() });
+    }
+}
+
+fn assert_edited_equals_fresh(name: &str, cloud: SphereCloud) {
     let mut studio = Studio::empty();
+    studio.world.insert_resource(cloud);
     OneOfEach::new(&mut studio);
     let meshes = [MeshSource::Cube, MeshSource::Quad, MeshSource::Icosphere { subdivisions: 1 }]
         .map(|s| studio.mesh_asset(s));
@@ -144,7 +156,7 @@ fn edited_equals_fresh() {
         let scene = studio.run();
         if edit % 100 == 99 {
             studio.baker.validate(&studio.world).unwrap();
-            assert_eq!(visible(&scene), visible(&studio.fresh()), "after edit {edit}");
+            assert_eq!(visible(&scene), visible(&studio.fresh()), "{name} after edit {edit}");
         }
     }
     for object in objects {

@@ -5,9 +5,11 @@ mod common;
 use bevy_ecs::prelude::*;
 use common::{OneOfEach, Studio};
 use glam::{DQuat, DVec3, Vec3};
+use luxel_bake::SphereTuning;
 use luxel_scene::{
     ActiveCamera, Camera, Environment, Material, MeshInstance, MeshSource, Name, RenderSettings, Sphere,
-    StableId, Surface, ToneMapping, Transform, Visibility, VolumeSource, VoxelVolume, spawn,
+    SphereAccel, SphereCloud, StableId, Surface, ToneMapping, Transform, Visibility, VolumeSource,
+    VoxelVolume, spawn,
 };
 
 type Edit = Box<dyn Fn(&mut World)>;
@@ -91,6 +93,12 @@ fn every_field_changes_the_revision() {
         ("max_depth", resource::<RenderSettings>(|s| s.max_depth += 1)),
         ("roulette_depth", resource::<RenderSettings>(|s| s.roulette_depth += 1)),
         ("seed", resource::<RenderSettings>(|s| s.seed += 1)),
+        ("min_spheres", resource::<SphereCloud>(|c| c.min_spheres = 1)),
+        ("max_depth", resource::<SphereCloud>(|c| c.max_depth = 3)),
+        ("auto", resource::<SphereTuning>(|t| t.auto = luxel_flat::SphereAccel::Bvh)),
+        ("generation", resource::<SphereTuning>(|t| t.generation += 1)),
+        ("accel", resource::<SphereCloud>(|c| c.accel = SphereAccel::Naive)),
+        ("removed sphere cloud", Box::new(|world: &mut World| _ = world.remove_resource::<SphereCloud>())),
         ("zenith", resource::<Environment>(|e| *e = gradient([0.5, 0.0, 0.0]))),
         ("horizon", resource::<Environment>(|e| *e = gradient([0.5, 0.5, 0.0]))),
         ("ground", resource::<Environment>(|e| *e = gradient([0.5, 0.5, 0.5]))),
@@ -142,6 +150,8 @@ fn what_no_ray_can_see_keeps_the_revision() {
             assert!(!world.get_mut::<Transform>(cube).unwrap().set_if_neq(same));
         }),
         Box::new(|world| world.resource_mut::<luxel_scene::Assets>().set_changed()),
+        resource::<SphereCloud>(|c| c.accel = SphereAccel::Octree),
+        resource::<SphereTuning>(|t| t.auto = luxel_flat::SphereAccel::Naive),
         Box::new(|world| _ = spawn(world, Transform::at(DVec3::X))),
     ];
     for (number, edit) in edits.iter().enumerate() {

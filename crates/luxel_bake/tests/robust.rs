@@ -105,7 +105,7 @@ fn one_entity_may_be_a_sphere_and_a_volume() {
     let (both, work) = studio.edit(|world| {
         world.entity_mut(scene.ball).insert(VoxelVolume { volume: scene.lantern_asset });
     });
-    assert_eq!((work.octree_updates, work.svo_built), (1, 0));
+    assert_eq!((work.sphere_updates, work.svo_built), (1, 0));
     assert_eq!(visible(&both), visible(&studio.fresh()));
     studio.world.entity_mut(scene.ball).remove::<VoxelVolume>();
     assert_eq!(visible(&studio.run()), visible(&studio.fresh()));

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use luxel_engine::output::Precision;
-use luxel_engine::{AovKind, BackendChoice, MAX_DEPTH, ToneMap, View};
+use luxel_engine::{AovKind, BackendChoice, MAX_DEPTH, QUALITIES, Quality, SphereAccel, ToneMap, View};
 
 use crate::values;
 
@@ -47,8 +47,8 @@ pub(crate) enum Command {
     Render(RenderArgs),
     /// Say what a scene holds, costs and calls for
     ///
-    /// Prints counts, memory per heap, the depths of the structures, features in use and left out with the reason
-    /// for each, what import dropped, and warnings.
+    /// Prints counts, memory per heap, the structures with their depths, which one the spheres have and why, features
+    /// in use and left out with the reason for each, what import dropped, and warnings.
     Info(InfoArgs),
     /// Show the passes that a scene would run, and why
     ///
@@ -72,7 +72,8 @@ pub(crate) enum Command {
   luxel render assets/showcase.ron
   luxel render bunny.obj -o bunny.png --size 640x480 --spp 128
   luxel render scene.ron -o scene.exr --aov albedo,normal,depth --error 2%
-  luxel render scene.ron -o heat.png --view steps --backend gpu --json"))]
+  luxel render scene.ron -o heat.png --view steps --backend gpu --json
+  luxel render assets/random_spheres.ron --quality low --sphere-accel bvh"))]
 pub(crate) struct RenderArgs {
     /// Scene (.ron) or model (.obj, .vox)
     pub(crate) file: PathBuf,
@@ -90,6 +91,12 @@ pub(crate) struct RenderArgs {
         ("auto", BackendChoice::Auto), ("gpu", BackendChoice::Gpu), ("cpu", BackendChoice::Cpu),
     ]))]
     pub(crate) backend: BackendChoice,
+
+    /// Samples and depth together: low is 4 samples per pixel and depth 4, standard 16 and 8, high 32 and 16; --spp and --max-depth win
+    #[arg(long, value_name = "PRESET", value_parser = values::named(
+        QUALITIES.iter().map(|row| (row.name, row.quality)).collect(),
+    ))]
+    pub(crate) quality: Option<Quality>,
 
     /// Stop at this many samples per pixel
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
@@ -111,6 +118,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(MAX_DEPTH)),
         allow_negative_numbers = true)]
     pub(crate) max_depth: Option<u32>,
+
+    /// Structure by which rays find spheres; auto measures which costs least. No picture depends on it, but octree-seed's is
+    /// for comparison and sometimes wrong [default: the scene's]
+    #[arg(long, value_name = "NAME", value_parser = values::named(SphereAccel::NAMES.to_vec()))]
+    pub(crate) sphere_accel: Option<SphereAccel>,
 
     /// Name of the camera to look through [default: the scene's]
     #[arg(long, value_name = "NAME")]
@@ -151,10 +163,14 @@ pub(crate) struct RenderArgs {
 
 /// Options of `luxel info`.
 #[derive(Args)]
-#[command(after_help = after_help!("  luxel info assets/showcase.ron\n  luxel info bunny.obj --json"))]
+#[command(after_help = after_help!("  luxel info assets/showcase.ron\n  luxel info assets/random_spheres.ron --sphere-accel bvh --json"))]
 pub(crate) struct InfoArgs {
     /// Scene (.ron) or model (.obj, .vox)
     pub(crate) file: PathBuf,
+
+    /// As if this structure over the spheres were asked for [default: the scene's]
+    #[arg(long, value_name = "NAME", value_parser = values::named(SphereAccel::NAMES.to_vec()))]
+    pub(crate) sphere_accel: Option<SphereAccel>,
 
     /// Print one JSON object
     #[arg(long)]
@@ -171,6 +187,10 @@ pub(crate) struct GraphArgs {
     /// As if first-hit outputs were asked for
     #[arg(long)]
     pub(crate) aov: bool,
+
+    /// As if this structure over the spheres were asked for [default: the scene's]
+    #[arg(long, value_name = "NAME", value_parser = values::named(SphereAccel::NAMES.to_vec()))]
+    pub(crate) sphere_accel: Option<SphereAccel>,
 
     /// Print one JSON object
     #[arg(long)]
@@ -241,14 +261,28 @@ mod tests {
     }
 
     #[test]
+    fn the_help_of_quality_says_what_the_table_says() {
+        let help = Cli::command().find_subcommand_mut("render").unwrap().render_long_help().to_string();
+        let words = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        let [low, standard, high] = [&QUALITIES[0], &QUALITIES[1], &QUALITIES[2]];
+        let expected = format!(
+            "low is {} samples per pixel and depth {}, standard {} and {}, high {} and {}",
+            low.spp, low.max_depth, standard.spp, standard.max_depth, high.spp, high.max_depth
+        );
+        assert!(words.contains(&expected), "{words}");
+    }
+
+    #[test]
     fn options_are_read() {
-        let line =
-            "luxel render a.ron -o b.exr --size 8x4 --error 2% --aov depth,ids --exposure -1 --tone-map agx";
-        let Some(Command::Render(args)) = Cli::try_parse_from(line.split(' ')).unwrap().command else {
+        let line = "luxel render a.ron -o b.exr --size 8x4 --error 2% --aov depth,ids --exposure -1 --tone-map agx \
+                    --quality low --sphere-accel octree-base";
+        let Some(Command::Render(args)) = Cli::try_parse_from(line.split_whitespace()).unwrap().command
+        else {
             panic!()
         };
         assert_eq!((args.size, args.error, args.exposure), (Some((8, 4)), Some(0.02), Some(-1.0)));
         assert_eq!(args.aov, [AovKind::Depth, AovKind::Ids]);
         assert_eq!((args.tone_map, args.view), (Some(ToneMap::AgX), View::PathTraced));
+        assert_eq!((args.quality, args.sphere_accel), (Some(Quality::Low), Some(SphereAccel::OctreeBase)));
     }
 }

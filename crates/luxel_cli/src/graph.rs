@@ -16,9 +16,10 @@ struct Answer {
 /// Shows the render graph of a scene.
 pub(crate) fn graph(args: &GraphArgs) -> Result<ExitCode, CliError> {
     let mut engine = Engine::load(&args.file)?;
+    args.sphere_accel.into_iter().for_each(|accel| engine.use_sphere_accel(accel));
     let features = engine.bake()?.features;
     let features = features.with(Feature::Aovs, args.aov || features.has(Feature::Aovs));
-    let nodes = graph::nodes(features);
+    let nodes = graph::nodes(features, &engine.sphere_accel());
     if args.json {
         reply::print_json(&Answer { scene: args.file.display().to_string(), nodes })?;
     } else {
@@ -55,7 +56,7 @@ mod tests {
             stage: "Trace".to_owned(),
             kernels: if runs { &["shade"] } else { &[] },
             runs,
-            because: "it must",
+            because: "it must".to_owned(),
         };
         let text = table(&[node("shade", true), node("longer name", false)]);
         let lines: Vec<&str> = text.lines().collect();

@@ -1,8 +1,8 @@
-//! Options of a render that its output cannot show.
+//! Options that were given and change nothing.
 use std::path::Path;
 
-use luxel_engine::View;
 use luxel_engine::output::Format;
+use luxel_engine::{SphereAccel, SphereAccelFacts, View};
 
 use crate::args::RenderArgs;
 
@@ -11,6 +11,13 @@ const LINEAR_BUT_ERROR: &str = "an EXR holds linear light (only the error estima
 const NOT_PATH: &str = "only --view path is tone mapped";
 const NOT_PATH_BUT_ERROR: &str = "only --view path is exposed (and the error estimate takes the exposure in)";
 const NOT_EXR: &str = "it is for an EXR";
+const NOTHING_LEFT: &str = "--spp and --max-depth say all that it stands for";
+
+/// A note if a structure was asked for and the scene turns out to have no spheres.
+pub(crate) fn without_spheres(asked: Option<SphereAccel>, facts: &SphereAccelFacts) -> Option<String> {
+    (asked.is_some() && facts.nodes == 0)
+        .then(|| "--sphere-accel has no effect: the scene has no spheres".to_owned())
+}
 
 /// One note per option that was given and does not change what is written to `output`.
 ///
@@ -23,10 +30,12 @@ pub(crate) fn ignored(args: &RenderArgs, output: &Path) -> Vec<String> {
         (false, _) => (Some(NOT_PATH), Some(NOT_PATH_BUT_ERROR)),
     };
     let precision = (!is_exr).then_some(NOT_EXR);
+    let quality = (args.spp.is_some() && args.max_depth.is_some()).then_some(NOTHING_LEFT);
     let options = [
         ("--tone-map", args.tone_map.is_some(), curve),
         ("--exposure", args.exposure.is_some(), exposure),
         ("--exr-precision", args.exr_precision.is_some(), precision),
+        ("--quality", args.quality.is_some(), quality),
     ];
     let given = options.into_iter().filter(|(_, is_given, _)| *is_given);
     given
@@ -65,6 +74,12 @@ mod tests {
     fn a_view_of_something_else_is_not_tone_mapped() {
         let all = "--view steps --exposure -1 --tone-map none";
         assert_eq!(options_without_effect("a.png", all), ["--tone-map", "--exposure"]);
+    }
+
+    #[test]
+    fn a_preset_has_no_effect_where_both_its_numbers_are_given() {
+        assert_eq!(options_without_effect("a.png", "--quality low --spp 4 --max-depth 4"), ["--quality"]);
+        assert!(options_without_effect("a.png", "--quality low --spp 4").is_empty());
     }
 
     #[test]

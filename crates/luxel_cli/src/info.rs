@@ -2,7 +2,7 @@
 use std::fmt::Write;
 
 use luxel_engine::info::SceneInfo;
-use luxel_engine::{Engine, ExitCode};
+use luxel_engine::{Engine, ExitCode, SphereAccelFacts};
 
 use crate::args::InfoArgs;
 use crate::error::CliError;
@@ -10,7 +10,9 @@ use crate::reply;
 
 /// Describes a scene.
 pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
-    let info = Engine::load(&args.file)?.info()?;
+    let mut engine = Engine::load(&args.file)?;
+    args.sphere_accel.into_iter().for_each(|accel| engine.use_sphere_accel(accel));
+    let info = engine.info()?;
     if args.json {
         reply::print_json(&info)?;
     } else {
@@ -46,9 +48,11 @@ fn head(info: &SceneInfo) -> String {
 
 fn structures(info: &SceneInfo) -> String {
     let baked = &info.baked;
+    let SphereAccelFacts { name, because, nodes, depth, bytes, .. } = &info.sphere_accel;
     let mut text = format!(
-        "structures\n  TLAS depth {}\n  sphere octree depth {}\n",
-        baked.tlas_depth, baked.octree_depth
+        "structures\n  TLAS depth {}\n  spheres: {name} of {nodes} nodes, depth {depth}, {}, because {because}\n",
+        baked.tlas_depth,
+        reply::bytes(*bytes)
     );
     for mesh in &baked.meshes {
         let (asset, triangles, nodes, depth) = (mesh.asset, mesh.triangles, mesh.nodes, mesh.depth);

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::args::RenderArgs;
 use crate::error::{CliError, one_line};
-use crate::ignored::ignored;
+use crate::ignored::{ignored, without_spheres};
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
 use crate::reply;
@@ -50,11 +50,13 @@ pub(crate) fn to_picture(scene: &Path, job: RenderJob, output: &Path) -> Result<
 fn job(args: &RenderArgs) -> RenderJob {
     RenderJob {
         size: args.size,
+        quality: args.quality,
         spp: args.spp,
         seconds: args.time,
         error: args.error,
         seed: args.seed,
         max_depth: args.max_depth,
+        sphere_accel: args.sphere_accel,
         camera: args.camera.clone(),
         tone_map: args.tone_map,
         exposure: args.exposure,
@@ -101,6 +103,7 @@ fn run(
     let mut summary = rendered.summary(&engine);
     summary.seconds.write = write_secs;
     tell_notices(&rendered, &summary, &progress);
+    without_spheres(job.sphere_accel, &summary.sphere_accel).iter().for_each(|note| progress.note(note));
     drop(progress);
     if json {
         let outputs = outputs.iter().map(|path| path.display().to_string()).collect();

@@ -10,8 +10,10 @@
 //! ▪ Invariant: [`traverse::intersect`] returns what [`naive::Naive::intersect`] returns, bit for bit, whatever the
 //! shape of the structures (see `luxel_geom::aabb` for why it can).
 pub mod bsdf;
+pub mod bvh;
 pub mod camera;
 pub mod cloud;
+pub mod cloud_cost;
 pub mod first_hit;
 pub mod hit;
 pub mod instance;

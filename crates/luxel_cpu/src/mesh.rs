@@ -1,10 +1,9 @@
-//! Closest hit in a triangle mesh: its BVH by skip pointers.
+//! Closest hit in a triangle mesh.
 use luxel_flat::{Counter, Counters, FlatScene, Instance, Span, Triangle};
 use luxel_geom::{Real, SlabRay, Vector, triangle};
 
-use crate::Exclusion;
 use crate::hit::PrimitiveHit;
-use crate::traverse::node_box;
+use crate::{Exclusion, bvh};
 
 /// The closest triangle along a ray in the mesh's space.
 pub fn intersect<R: Real>(
@@ -17,28 +16,26 @@ pub fn intersect<R: Real>(
     let span = Span { first: instance.node_first, count: instance.node_count };
     let nodes = &scene.bvh_nodes.as_slice()[span.range()];
     let triangles = scene.triangles.as_slice();
-    let mut ray = *ray;
+    let mut closest_ray = *ray;
     let mut best: Option<PrimitiveHit<R>> = None;
-    let mut index = 0;
-    while let Some(node) = nodes.get(index) {
-        counters[Counter::BvhNodes] += 1;
-        if !node_box(node).interval(&ray).overlaps(ray.t_min, ray.t_max) {
-            index = node.skip as usize;
-            continue;
-        }
-        let (first, count) = node.primitives();
-        for slot in instance.primitive_first + first..instance.primitive_first + first + count {
-            counters[Counter::TriangleTests] += 1;
+    let mut test_count = 0;
+    let walk = bvh::walk(nodes, ray, |first, count| {
+        test_count += u64::from(count);
+        let first = instance.primitive_first + first;
+        for slot in first..first + count {
             let record = &triangles[slot as usize];
-            if let Some(hit) = intersect_triangle(record, slot, instance, &ray, exclusion)
+            if let Some(hit) = intersect_triangle(record, slot, instance, &closest_ray, exclusion)
                 && hit.precedes(&best)
             {
-                ray.t_max = hit.t;
+                closest_ray.t_max = hit.t;
                 best = Some(hit);
             }
         }
-        index += 1;
-    }
+        closest_ray.t_max
+    });
+    counters[Counter::BvhNodes] += walk.node_count;
+    counters[Counter::TriangleTests] += test_count;
+    counters[Counter::TraversalCaps] += u64::from(!walk.is_sound);
     best
 }
 

@@ -28,12 +28,14 @@ pub fn intersect<R: Real>(
             index = node.skip as usize;
             continue;
         }
-        if node.is_leaf() {
-            let slot = node.primitives().0;
-            let hit = instance::intersect(scene, slot, &slab_ray, limit, exclusion, counters);
-            best = hit.filter(|hit| hit.precedes(&best)).or(best);
+        if !node.is_leaf() {
+            index = node.first_child() as usize;
+            continue;
         }
-        index += 1;
+        let slot = node.primitives().0;
+        let hit = instance::intersect(scene, slot, &slab_ray, limit, exclusion, counters);
+        best = hit.filter(|hit| hit.precedes(&best)).or(best);
+        index = node.skip as usize;
     }
     best
 }

@@ -8,7 +8,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, UVec3, Vec3};
 use luxel_accel::{RootCell, SvoVoxel, build_svo, build_tlas};
 use luxel_cpu::surface::Surface;
 use luxel_cpu::{Exclusion, Hit};
-use luxel_flat::{FlatScene, Instance};
+use luxel_flat::{BvhNode, FlatScene, Instance};
 use luxel_geom::{Aabb, Ray, Vector};
 use luxel_testkit::{Random, TestMesh, meshes, rays, spheres};
 
@@ -71,12 +71,18 @@ fn the_shape_of_the_tlas_changes_nothing() {
     let nodes = build_tlas(&boxes[..7]).unwrap();
     let rest = build_tlas(&boxes[7..]).unwrap();
     let root = boxes.iter().fold(Aabb::empty(), |a, (_, b)| a.union(b));
-    let shift = |nodes: &[luxel_flat::BvhNode], by: u32| -> Vec<_> {
-        nodes.iter().map(|n| luxel_flat::BvhNode { skip: n.skip + by, ..*n }).collect()
-    };
     let end = (nodes.len() + rest.len() + 1) as u32;
-    let root = luxel_flat::BvhNode { lo: root.lo.into(), skip: end, hi: root.hi.into(), leaf: 0 };
-    let by_hand = [vec![root], shift(&nodes, 1), shift(&rest, 1 + nodes.len() as u32)].concat();
+    let root = BvhNode { lo: root.lo.into(), skip: end, hi: root.hi.into(), leaf: 1 };
+    let moved = |nodes: &[BvhNode], by: u32, skip: u32| -> Vec<BvhNode> {
+        let place = |n: &BvhNode| BvhNode {
+            skip: if n.skip as usize == nodes.len() { skip } else { n.skip + by },
+            leaf: if n.is_leaf() { n.leaf } else { n.leaf + by },
+            ..*n
+        };
+        nodes.iter().map(place).collect()
+    };
+    let (nodes, rest) = (moved(&nodes, 2, 2), moved(&rest, 1 + nodes.len() as u32, end));
+    let by_hand = [&[root, nodes[0], rest[0]], &nodes[1..], &rest[1..]].concat();
     other.bvh_nodes.write(scene.params.tlas_first as usize, &by_hand, 2);
     for ray in rays::random(5, 5000, 4.0) {
         assert_eq!(trace(&scene, &ray), trace(&other, &ray));

@@ -10,12 +10,14 @@ use luxel_flat::FlatScene;
 use luxel_scene::{ActiveCamera, Camera, LoadReport, Name, RenderSettings, ToneMapping};
 
 use crate::EngineError;
+use crate::sphere_keeper::SphereKeeper;
 
 /// A loaded scene that can be edited, baked and rendered.
 pub struct Engine {
     /// The scene: edit its components and resources, then [`Engine::bake`].
     pub world: World,
     baker: Baker,
+    sphere_keeper: SphereKeeper,
     path: PathBuf,
     report: LoadReport,
     load_secs: f64,
@@ -47,6 +49,7 @@ impl Engine {
         Ok(Self {
             world,
             baker,
+            sphere_keeper: SphereKeeper::default(),
             path: path.to_owned(),
             report: LoadReport::default(),
             load_secs: 0.0,
@@ -54,13 +57,14 @@ impl Engine {
         })
     }
 
-    /// Takes in what changed in the world; the same snapshot as before if nothing did.
+    /// Takes in what changed in the world; the same snapshot as before if nothing did. Chooses and renews the
+    /// structure over the spheres.
     ///
     /// # Errors
     /// When the scene cannot be shown: no camera, for example.
     pub fn bake(&mut self) -> Result<Arc<FlatScene>, EngineError> {
         let start = Instant::now();
-        let baked = self.baker.run(&mut self.world);
+        let baked = self.sphere_keeper.bake(&mut self.baker, &mut self.world);
         self.bake_secs += start.elapsed().as_secs_f64();
         baked.map_err(|source| EngineError::Bake { scene: self.path.display().to_string(), source })
     }
@@ -73,6 +77,10 @@ impl Engine {
     /// What import dropped and warns about.
     pub fn load_report(&self) -> &LoadReport {
         &self.report
+    }
+
+    pub(crate) fn sphere_keeper(&self) -> &SphereKeeper {
+        &self.sphere_keeper
     }
 
     /// Facts about the last baked scene.

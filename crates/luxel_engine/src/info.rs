@@ -3,7 +3,7 @@ use luxel_bake::BakeReport;
 use luxel_flat::{FEATURES, FeatureSet};
 use serde::Serialize;
 
-use crate::{Engine, EngineError};
+use crate::{Engine, EngineError, SphereAccelFacts};
 
 /// A feature as `luxel info` shows it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -25,11 +25,13 @@ pub struct SceneInfo {
     pub scene_hash: String,
     /// Counts, structures, memory, and what is drawn otherwise than asked.
     pub baked: BakeReport,
+    /// The structure over the spheres, and why.
+    pub sphere_accel: SphereAccelFacts,
     /// Every feature.
     pub features: Vec<FeatureFacts>,
     /// What import left out, one line each.
     pub dropped: Vec<String>,
-    /// What import warns about, one line each.
+    /// What import and the structure over the spheres warn about, one line each.
     pub warnings: Vec<String>,
     /// Seconds that loading took.
     pub load_secs: f64,
@@ -53,13 +55,17 @@ impl Engine {
     /// When the scene cannot be baked.
     pub fn info(&mut self) -> Result<SceneInfo, EngineError> {
         let scene = self.bake()?;
+        let baked = self.bake_report();
+        let sphere_accel = self.sphere_accel_facts(&baked.sphere_cloud);
+        let warnings = self.load_report().warnings.iter().cloned().chain(sphere_accel.notices());
         Ok(SceneInfo {
             scene: self.path().display().to_string(),
             scene_hash: self.scene_hash()?,
-            baked: self.bake_report(),
+            warnings: warnings.collect(),
+            baked,
+            sphere_accel,
             features: features(scene.features),
             dropped: self.load_report().dropped.clone(),
-            warnings: self.load_report().warnings.clone(),
             load_secs: self.load_secs(),
             bake_secs: self.bake_secs(),
         })

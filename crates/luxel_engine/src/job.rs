@@ -2,9 +2,9 @@
 use bevy_ecs::prelude::*;
 use luxel_film::{StopRule, ToneMap};
 use luxel_flat::FeatureSet;
-use luxel_scene::{RenderSettings, ToneMapping};
+use luxel_scene::{RenderSettings, SphereAccel, ToneMapping};
 
-use crate::{BackendChoice, Engine, EngineError};
+use crate::{BackendChoice, Engine, EngineError, Quality};
 
 /// Largest width or height of a picture.
 pub const MAX_SIZE: u32 = 16_384;
@@ -17,6 +17,8 @@ pub const MAX_DEPTH: u32 = 65_535;
 pub struct RenderJob {
     /// Width and height in pixels.
     pub size: Option<(u32, u32)>,
+    /// Samples and depth together; `spp` and `max_depth` win over it.
+    pub quality: Option<Quality>,
     /// Samples per pixel.
     pub spp: Option<u32>,
     /// Seconds of tracing.
@@ -27,6 +29,8 @@ pub struct RenderJob {
     pub seed: Option<u32>,
     /// How often light may scatter after the first hit.
     pub max_depth: Option<u32>,
+    /// Structure over the spheres.
+    pub sphere_accel: Option<SphereAccel>,
     /// Name of the camera.
     pub camera: Option<String>,
     /// Curve from radiance to display.
@@ -51,15 +55,24 @@ impl RenderJob {
         if let Some(name) = &self.camera {
             engine.use_camera(name)?;
         }
+        if let Some(accel) = self.sphere_accel {
+            engine.use_sphere_accel(accel);
+        }
         let mut settings = engine.settings();
         (settings.width, settings.height) = self.size.unwrap_or((settings.width, settings.height));
-        settings.spp = self.spp.unwrap_or(settings.spp);
+        settings.spp = self.samples().unwrap_or(settings.spp);
         settings.seed = self.seed.unwrap_or(settings.seed);
-        settings.max_depth = self.max_depth.unwrap_or(settings.max_depth);
+        let depth = self.max_depth.or(self.quality.map(|quality| quality.row().max_depth));
+        settings.max_depth = depth.unwrap_or(settings.max_depth);
         settings.tone_map = self.tone_map.map_or(settings.tone_map, tone_mapping);
         settings.exposure = self.exposure.unwrap_or(settings.exposure);
         engine.world.resource_mut::<RenderSettings>().set_if_neq(settings);
         Ok(())
+    }
+
+    /// Samples per pixel, given as such or by a preset.
+    fn samples(&self) -> Option<u32> {
+        self.spp.or(self.quality.map(|quality| quality.row().spp))
     }
 
     fn check(&self) -> Result<(), EngineError> {
@@ -90,7 +103,7 @@ impl RenderJob {
     /// When to stop: the limits given, or the scene's samples if none is.
     pub(crate) fn stop_rules(&self, settings: &RenderSettings) -> Vec<StopRule> {
         let mut rules = Vec::new();
-        rules.extend(self.spp.map(StopRule::Samples));
+        rules.extend(self.samples().map(StopRule::Samples));
         rules.extend(self.seconds.map(StopRule::Seconds));
         rules.extend(self.error.map(StopRule::Error));
         if rules.is_empty() {
@@ -107,5 +120,21 @@ fn tone_mapping(tone_map: ToneMap) -> ToneMapping {
         ToneMap::Reinhard => ToneMapping::Reinhard,
         ToneMap::Aces => ToneMapping::Aces,
         ToneMap::AgX => ToneMapping::AgX,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_preset_is_a_number_of_samples_and_what_is_given_wins() {
+        let scene = RenderSettings::default();
+        let low = RenderJob { quality: Some(Quality::Low), ..RenderJob::default() };
+        assert_eq!(low.stop_rules(&scene), [StopRule::Samples(4)]);
+        let both = RenderJob { spp: Some(7), ..low.clone() };
+        assert_eq!(both.stop_rules(&scene), [StopRule::Samples(7)]);
+        let timed = RenderJob { seconds: Some(2.0), ..low };
+        assert_eq!(timed.stop_rules(&scene), [StopRule::Samples(4), StopRule::Seconds(2.0)]);
     }
 }

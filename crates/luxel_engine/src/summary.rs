@@ -5,7 +5,7 @@ use luxel_film::StopRule;
 use serde::Serialize;
 
 use crate::output::Metadata;
-use crate::{Engine, Rendered, Stopped};
+use crate::{Engine, Rendered, SphereAccelFacts, Stopped};
 
 /// Seconds per stage.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -62,6 +62,8 @@ pub struct RenderSummary {
     pub driver: String,
     /// Why this backend.
     pub because: String,
+    /// The structure over the spheres, and why.
+    pub sphere_accel: SphereAccelFacts,
     /// Features in use.
     pub features: Vec<&'static str>,
     /// Seconds per stage.
@@ -81,6 +83,8 @@ impl Rendered {
     pub fn summary(&self, engine: &Engine) -> RenderSummary {
         let rays = self.stats.counters.rays() as f64;
         let known = self.samples > 1;
+        let baked = engine.bake_report();
+        let sphere_accel = engine.sphere_accel_facts(&baked.sphere_cloud);
         RenderSummary {
             scene: engine.path().display().to_string(),
             scene_hash: self.scene_hash.clone(),
@@ -95,6 +99,8 @@ impl Rendered {
             device: self.facts.device.clone(),
             driver: self.facts.driver.clone(),
             because: self.because.clone(),
+            notices: self.all_notices(engine, &baked.warnings, &sphere_accel),
+            sphere_accel,
             features: self.scene.features.rows().map(|row| row.name).collect(),
             seconds: StageSecs {
                 load: engine.load_secs(),
@@ -106,7 +112,6 @@ impl Rendered {
             passes: self.passes(),
             rays_per_sec: if self.trace_secs > 0.0 { rays / self.trace_secs } else { 0.0 },
             counters: self.stats.counters.iter().collect(),
-            notices: self.all_notices(engine),
         }
     }
 
@@ -138,10 +143,9 @@ impl Rendered {
         passes.map(|p| PassSummary { label: p.label.clone(), ms: p.secs * 1e3, runs: p.runs }).collect()
     }
 
-    fn all_notices(&self, engine: &Engine) -> Vec<String> {
+    fn all_notices(&self, engine: &Engine, baked: &[String], spheres: &SphereAccelFacts) -> Vec<String> {
         let load = engine.load_report();
-        let baked = engine.bake_report().warnings;
-        let all = load.dropped.iter().chain(&load.warnings).chain(&baked).chain(&self.notices);
-        all.cloned().collect()
+        let all = load.dropped.iter().chain(&load.warnings).chain(baked);
+        all.cloned().chain(spheres.notices()).chain(self.notices.iter().cloned()).collect()
     }
 }

@@ -30,6 +30,8 @@ pub use film::{Cascade, FilmPixel};
 pub use heap::Heap;
 pub use params::{CameraRecord, DisplayParams, SceneParams, SliceParams};
 pub use path::{Aov, Path};
-pub use primitives::{BvhNode, Instance, LeafSphere, MaterialRecord, OctreeNode, SphereRecord, SvoNode, Triangle};
+pub use primitives::{
+    BvhNode, Instance, LeafSphere, MaterialRecord, OctreeNode, SphereRecord, SvoNode, Triangle,
+};
 pub use scene::{FlatScene, Span};
 pub use sphere_accel::{SPHERE_ACCELS, SphereAccel};

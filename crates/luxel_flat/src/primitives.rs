@@ -5,18 +5,21 @@
 use crate::layout::shared_struct;
 
 shared_struct! {
-    /// A node of a mesh BVH or of the TLAS, in depth-first order.
+    /// A node of a mesh BVH, of the TLAS or of a BVH over spheres.
     ///
-    /// The first child of an inner node is the next record; the second is the first child's `skip`.
+    /// The two children of an inner node stand side by side, behind their parent. Two walks work on these
+    /// records: without a stack (into `first_child` where the ray meets a box, else and after a leaf to `skip`),
+    /// and with a stack (the nearer child first).
     pub struct BvhNode {
         /// Corner of smallest coordinates, outset.
         pub lo: [f32; 3],
-        /// The node after this one's subtree; greater than this node's own index. The end of the tree for the
-        /// last subtree.
+        /// The node after this one's subtree: a first child's sibling, a second child's parent's `skip`; for the
+        /// root the number of nodes, which ends the walk.
         pub skip: u32,
         /// Corner of largest coordinates, outset.
         pub hi: [f32; 3],
-        /// 0 for an inner node, else `count << LEAF_COUNT_SHIFT | first` with 1 ≤ count ≤ `MAX_LEAF_SIZE`.
+        /// `count << LEAF_COUNT_SHIFT | first`: a leaf's primitives with 1 ≤ count ≤ `MAX_LEAF_SIZE`, or with a
+        /// count of 0 an inner node's first child.
         pub leaf: u32,
     }
 }
@@ -174,10 +177,16 @@ impl BvhNode {
     /// True if the node holds primitives.
     #[inline]
     pub fn is_leaf(&self) -> bool {
-        self.leaf != 0
+        self.leaf >> crate::LEAF_COUNT_SHIFT != 0
     }
 
-    /// The primitives of a leaf: first and count.
+    /// The first child of an inner node; the second stands next to it.
+    #[inline]
+    pub fn first_child(&self) -> u32 {
+        self.leaf
+    }
+
+    /// The primitives of a leaf: first and count; a count of 0 for an inner node.
     #[inline]
     pub fn primitives(&self) -> (u32, u32) {
         let count = self.leaf >> crate::LEAF_COUNT_SHIFT;

@@ -17,7 +17,9 @@
 //! ```
 pub mod aabb;
 pub mod affine;
+pub mod box_pair;
 pub mod frame;
+pub mod lanes;
 pub mod optics;
 pub mod ray;
 pub mod real;
@@ -30,5 +32,7 @@ pub mod warp;
 
 pub use aabb::{Aabb, Interval};
 pub use affine::Affine;
+pub use box_pair::{PairHit, PairRay};
+pub use lanes::Lanes;
 pub use ray::{Exclude, Ray, SlabRay};
 pub use real::{Real, Vector};

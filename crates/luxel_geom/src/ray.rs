@@ -62,6 +62,8 @@ pub struct SlabRay<R: Real> {
     pub direction: R::Vec3,
     /// Reciprocal direction, always finite.
     pub inv_direction: R::Vec3,
+    /// Reciprocal of the direction's squared length.
+    pub inv_square: R,
     /// Open lower end of the interval.
     pub t_min: R,
     /// Closed upper end of the interval.
@@ -84,6 +86,7 @@ impl<R: Real> SlabRay<R> {
             origin: ray.origin,
             direction: ray.direction,
             inv_direction,
+            inv_square: R::ONE / ray.direction.dot(ray.direction),
             t_min: ray.t_min,
             t_max: ray.t_max,
         }

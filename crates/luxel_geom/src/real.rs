@@ -5,6 +5,8 @@
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 
+use crate::Lanes;
+
 /// A floating-point scalar that kernels can be written in.
 pub trait Real:
     Copy
@@ -24,6 +26,8 @@ pub trait Real:
 {
     /// The vector of three of these.
     type Vec3: Vector<Self>;
+    /// Four of these for one instruction.
+    type Lanes: Lanes<Self>;
     /// Zero.
     const ZERO: Self;
     /// One.
@@ -170,9 +174,10 @@ pub trait Vector<R: Real>:
 }
 
 macro_rules! impl_real {
-    ($real:ident, $vec:ty, $roundoff:expr, $below_one:expr) => {
+    ($real:ident, $vec:ty, $lanes:ty, $roundoff:expr, $below_one:expr) => {
         impl Real for $real {
             type Vec3 = $vec;
+            type Lanes = $lanes;
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const UNIT_ROUNDOFF: Self = $roundoff;
@@ -269,5 +274,5 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32, glam::Vec3, 1.0 / (1u32 << 24) as f32, 1.0 - 1.0 / (1u32 << 24) as f32);
-impl_real!(f64, glam::DVec3, 1.0 / (1u64 << 53) as f64, 1.0 - 1.0 / (1u64 << 53) as f64);
+impl_real!(f32, glam::Vec3, glam::Vec4, 1.0 / (1u32 << 24) as f32, 1.0 - 1.0 / (1u32 << 24) as f32);
+impl_real!(f64, glam::DVec3, glam::DVec4, 1.0 / (1u64 << 53) as f64, 1.0 - 1.0 / (1u64 << 53) as f64);

@@ -1,10 +1,13 @@
 //! Ray and sphere.
 //!
 //! Theory: Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing
-//! Gems ch. 7: the discriminant is `r² − |f + (b'/a) d|²`, not `b² − 4ac`, and the constant term is
-//! `(|f| − r)(|f| + r)`. Deviation: the parameter is held inside the sphere's own box interval
+//! Gems ch. 7: the discriminant is `r² − |f + (b'/a) d|²`, not `b² − 4ac`, and of the two roots the one without
+//! cancellation is computed first. Deviation: the parameter is held inside the sphere's own box interval
 //! (see [`crate::aabb`]), and a ray that starts on the sphere is handled by [`Exclude`], not by an epsilon.
-use crate::{Aabb, Exclude, Real, SlabRay, Vector};
+//!
+//! Most spheres that a ray is tested with are missed, so what tells a miss comes first, and [`QuadRay`] asks it of
+//! four spheres at once.
+use crate::{Aabb, Exclude, Lanes, Real, SlabRay, Vector};
 
 /// The stored box of a sphere: outset, as every box is.
 #[inline]
@@ -16,11 +19,21 @@ pub fn bounds<R: Real>(center: R::Vec3, radius: R) -> Aabb<R> {
 /// The first parameter in `(t_min, t_max]` at which the ray meets the sphere.
 #[inline]
 pub fn intersect<R: Real>(ray: &SlabRay<R>, center: R::Vec3, radius: R, exclude: Exclude) -> Option<R> {
-    let interval = bounds(center, radius).interval(ray);
-    if !interval.overlaps(ray.t_min, ray.t_max) || exclude == Exclude::Leaving {
+    let f = ray.origin - center;
+    let b = -f.dot(ray.direction);
+    let c = f.dot(f) - radius * radius;
+    let miss = f + ray.direction * (b * ray.inv_square);
+    let discriminant = radius * radius - miss.dot(miss);
+    // From outside a sphere is met only in front.
+    let can_meet = discriminant >= R::ZERO && (b >= R::ZERO || c <= R::ZERO) && radius > R::ZERO;
+    if !can_meet || exclude == Exclude::Leaving {
         return None;
     }
-    let (near, far) = roots(ray.origin - center, ray.direction, radius)?;
+    let (near, far) = roots(ray.direction.dot(ray.direction), b, c, discriminant)?;
+    let interval = bounds(center, radius).interval(ray);
+    if !interval.overlaps(ray.t_min, ray.t_max) {
+        return None;
+    }
     let accept = |t: R| {
         let t = interval.clamp(t);
         (t > ray.t_min && t <= ray.t_max).then_some(t)
@@ -31,25 +44,52 @@ pub fn intersect<R: Real>(ray: &SlabRay<R>, center: R::Vec3, radius: R, exclude:
     }
 }
 
-/// Both parameters at which a line meets a sphere, the smaller first. `f` is origin minus centre.
-fn roots<R: Real>(f: R::Vec3, d: R::Vec3, radius: R) -> Option<(R, R)> {
-    let a = d.dot(d);
-    let b = -f.dot(d);
-    let closest = f + d * (b / a);
-    // Factored, so that a tangent ray loses no digits to `r²`.
-    let miss = closest.length();
-    let discriminant = (radius - miss) * (radius + miss);
-    if !(discriminant >= R::ZERO && radius > R::ZERO) {
-        return None;
-    }
+/// Both roots of `a t² − 2 b t + c`, the smaller first.
+#[inline]
+fn roots<R: Real>(a: R, b: R, c: R, discriminant: R) -> Option<(R, R)> {
     let q = b + (a * discriminant).sqrt().with_sign_of(b);
     if q == R::ZERO {
         return None;
     }
-    let distance = f.length();
-    let c = (distance - radius) * (distance + radius);
     let (t0, t1) = (c / q, q / a);
     Some((t0.min(t1), t0.max(t1)))
+}
+
+/// A ray ready to be tested with four spheres at once.
+#[derive(Clone, Copy, Debug)]
+pub struct QuadRay<R: Real> {
+    origin: [R::Lanes; 3],
+    direction: [R::Lanes; 3],
+    inv_square: R::Lanes,
+}
+
+impl<R: Real> QuadRay<R> {
+    /// Spreads a ray over the lanes.
+    #[inline]
+    pub fn new(ray: &SlabRay<R>) -> Self {
+        Self {
+            origin: [0, 1, 2].map(|axis| R::Lanes::splat(ray.origin.axis(axis))),
+            direction: [0, 1, 2].map(|axis| R::Lanes::splat(ray.direction.axis(axis))),
+            inv_square: R::Lanes::splat(ray.inv_square),
+        }
+    }
+
+    /// Bit i is set if [`intersect`] with sphere i would look for roots. Centres by axis.
+    #[inline]
+    pub fn can_meet(&self, centers: [[f32; 4]; 3], radii: [f32; 4]) -> u32 {
+        let [ox, oy, oz] = self.origin;
+        let [dx, dy, dz] = self.direction;
+        let [x, y, z] = centers.map(R::Lanes::from_f32);
+        let (fx, fy, fz) = (ox - x, oy - y, oz - z);
+        let b = -(fx * dx + fy * dy + fz * dz);
+        let foot = b * self.inv_square;
+        let (mx, my, mz) = (fx + dx * foot, fy + dy * foot, fz + dz * foot);
+        let (radius, zero) = (R::Lanes::from_f32(radii), R::Lanes::splat(R::ZERO));
+        let square = radius * radius;
+        let discriminant = square - (mx * mx + my * my + mz * mz);
+        let c = fx * fx + fy * fy + fz * fz - square;
+        zero.at_most(discriminant) & (zero.at_most(b) | c.at_most(zero))
+    }
 }
 
 /// The hit point moved onto the sphere, and the outward unit normal there.

@@ -2,8 +2,8 @@
 use bevy_ecs::prelude::Resource;
 use bytemuck::Pod;
 use luxel_flat::{
-    BvhNode, Counter, DisplayParams, FlatScene, Heap, Instance, MaterialRecord, OctreeNode, SceneParams,
-    SliceParams, SphereRecord, SvoNode, Triangle,
+    BvhNode, Counter, DisplayParams, FlatScene, Heap, Instance, LeafSphere, MaterialRecord, OctreeNode,
+    SceneParams, SliceParams, SphereRecord, SvoNode, Triangle,
 };
 use luxel_gpu::{Gpu, GpuBuffer, GpuError, Resources, Uniform};
 
@@ -20,8 +20,12 @@ impl<T: Pod + Default> GpuHeap<T> {
         Ok(Self { buffer, revision: 0, records: std::marker::PhantomData })
     }
 
-    /// Writes the pages that are newer than what is there; returns the bytes written.
+    /// Writes the pages that are newer than what is there; returns the bytes written. An empty heap gives its room
+    /// back: a structure that a scene no longer has.
     fn upload(&mut self, gpu: &Gpu, heap: &Heap<T>) -> Result<u64, GpuError> {
+        if heap.is_empty() && self.revision > 0 {
+            *self = Self::new(gpu, self.buffer.label())?;
+        }
         let ranges = heap.newer_than(self.revision);
         if ranges.is_empty() {
             return Ok(0);
@@ -45,6 +49,8 @@ pub struct GpuScene {
     instances: GpuHeap<Instance>,
     octree_nodes: GpuHeap<OctreeNode>,
     spheres: GpuHeap<SphereRecord>,
+    sphere_nodes: GpuHeap<BvhNode>,
+    leaf_spheres: GpuHeap<LeafSphere>,
     triangles: GpuHeap<Triangle>,
     svo_nodes: GpuHeap<SvoNode>,
     materials: GpuHeap<MaterialRecord>,
@@ -66,6 +72,8 @@ impl GpuScene {
             instances: GpuHeap::new(gpu, "instances")?,
             octree_nodes: GpuHeap::new(gpu, "octree_nodes")?,
             spheres: GpuHeap::new(gpu, "spheres")?,
+            sphere_nodes: GpuHeap::new(gpu, "sphere_nodes")?,
+            leaf_spheres: GpuHeap::new(gpu, "leaf_spheres")?,
             triangles: GpuHeap::new(gpu, "triangles")?,
             svo_nodes: GpuHeap::new(gpu, "svo_nodes")?,
             materials: GpuHeap::new(gpu, "materials")?,
@@ -91,6 +99,8 @@ impl GpuScene {
             + self.instances.upload(gpu, &scene.instances)?
             + self.octree_nodes.upload(gpu, &scene.octree_nodes)?
             + self.spheres.upload(gpu, &scene.spheres)?
+            + self.sphere_nodes.upload(gpu, &scene.sphere_nodes)?
+            + self.leaf_spheres.upload(gpu, &scene.leaf_spheres)?
             + self.triangles.upload(gpu, &scene.triangles)?
             + self.svo_nodes.upload(gpu, &scene.svo_nodes)?
             + self.materials.upload(gpu, &scene.materials)?
@@ -129,6 +139,8 @@ impl GpuScene {
             .buffer("instances", &self.instances.buffer)
             .buffer("octree_nodes", &self.octree_nodes.buffer)
             .buffer("spheres", &self.spheres.buffer)
+            .buffer("sphere_nodes", &self.sphere_nodes.buffer)
+            .buffer("leaf_spheres", &self.leaf_spheres.buffer)
             .buffer("triangles", &self.triangles.buffer)
             .buffer("svo_nodes", &self.svo_nodes.buffer)
             .buffer("materials", &self.materials.buffer)

@@ -1,8 +1,8 @@
-//! The kernels, and the pipelines made of them for a set of features.
+//! The kernels, and the pipelines made of them for what a scene calls for.
 use std::sync::Arc;
 
 use bevy_ecs::prelude::Resource;
-use luxel_flat::{Feature, FeatureSet, WORKGROUP_SIZE};
+use luxel_flat::{Feature, FeatureSet, SphereAccel, WORKGROUP_SIZE};
 use luxel_gpu::{Gpu, GpuError, Kernel, Overrides, Pipeline, PipelineCache};
 
 /// A kernel and when it is needed.
@@ -44,19 +44,24 @@ pub const KERNELS: &[KernelRow] = &[
     KernelRow { kernel: RESOLVE, feature: None, max_functions: 24 },
 ];
 
-/// A set of features as the conditions of a WESL compilation.
-pub fn conditions(features: FeatureSet) -> luxel_gpu::FeatureSet {
-    features.conditions().collect()
+/// What a scene calls for as the conditions of a WESL compilation: its features, and the structure over its spheres.
+pub fn conditions(features: FeatureSet, accel: SphereAccel) -> luxel_gpu::FeatureSet {
+    features.conditions().chain(accel.conditions()).collect()
 }
 
-/// The pipelines that the current features need, in the order of [`KERNELS`].
+/// The pipelines that the current scene needs, in the order of [`KERNELS`].
 #[derive(Resource, Default)]
 pub(crate) struct Pipelines(Vec<(Kernel, Arc<Pipeline>)>);
 
 impl Pipelines {
     /// Compiles what is missing in the cache.
-    pub(crate) fn make(gpu: &Gpu, cache: &mut PipelineCache, features: FeatureSet) -> Result<Self, GpuError> {
-        let conditions = conditions(features);
+    pub(crate) fn make(
+        gpu: &Gpu,
+        cache: &mut PipelineCache,
+        features: FeatureSet,
+        accel: SphereAccel,
+    ) -> Result<Self, GpuError> {
+        let conditions = conditions(features, accel);
         let needed = KERNELS.iter().filter(|row| row.feature.is_none_or(|f| features.has(f)));
         let pipelines = needed.map(|row| {
             let pipeline = cache.get(gpu, &row.kernel, &conditions, &Overrides::default())?;
@@ -65,12 +70,12 @@ impl Pipelines {
         pipelines.collect::<Result<_, GpuError>>().map(Self)
     }
 
-    /// The pipeline of a kernel that the current features need.
+    /// The pipeline of a kernel that the current scene needs.
     pub(crate) fn get(&self, kernel: &Kernel) -> Result<&Pipeline, GpuError> {
         let found = self.0.iter().find(|(k, _)| k == kernel);
         found.map(|(_, pipeline)| pipeline.as_ref()).ok_or_else(|| GpuError::Internal {
             what: format!("kernel {}", kernel.entry),
-            message: "it was not compiled for these features".to_owned(),
+            message: "it was not compiled for this scene".to_owned(),
         })
     }
 }

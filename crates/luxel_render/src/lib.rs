@@ -6,6 +6,7 @@
 //!
 //! ▪ Invariants: no node opens a pass except through `luxel_gpu::Frame`, so every pass is timed; a node whose
 //! feature the scene does not call for does not run, and its code and bindings are not linked.
+mod closest_hits;
 mod gpu_film;
 mod gpu_scene;
 mod graph;
@@ -14,6 +15,7 @@ mod nodes;
 mod tracer;
 mod watertight;
 
+pub use closest_hits::{GpuHit, GpuHits, RayShooter, Start, closest_hits};
 pub use gpu_film::GpuFilm;
 pub use gpu_scene::GpuScene;
 pub use graph::{GraphSet, NODES, NodeRow, schedule_in_order};

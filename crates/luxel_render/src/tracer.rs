@@ -101,7 +101,8 @@ impl GpuTracer {
         let pixels = request.scene.pixel_count() as u32;
         let aovs = request.features.has(Feature::Aovs);
         let compile = Instant::now();
-        let pipelines = Pipelines::make(&self.gpu, &mut self.cache, request.features)?;
+        let accel = request.scene.sphere_accel;
+        let pipelines = Pipelines::make(&self.gpu, &mut self.cache, request.features, accel)?;
         let compile_secs = compile.elapsed().as_secs_f64();
         self.world.insert_resource(pipelines);
         self.world.insert_resource(ActiveFeatures(request.features));

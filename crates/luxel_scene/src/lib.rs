@@ -1,7 +1,8 @@
 //! What a scene is: components, assets, import and scene files.
 //!
 //! A scene is a [`bevy_ecs`] world. Entities are spheres, meshes, voxel volumes, cameras and groups;
-//! resources are the light around them, the settings of the picture, and the geometry they share.
+//! resources are the light around them, the settings of the picture and of the sphere cloud, and the geometry
+//! they share.
 //!
 //! ```
 //! use bevy_ecs::prelude::*;
@@ -41,6 +42,7 @@ mod material;
 mod procedural;
 mod report;
 mod resources;
+mod sphere_cloud;
 
 use std::fs;
 use std::path::Path;
@@ -59,6 +61,7 @@ pub use ids::{StableId, StableIds, spawn};
 pub use material::{Material, Surface};
 pub use report::LoadReport;
 pub use resources::{Environment, RenderSettings, ToneMapping};
+pub use sphere_cloud::{MAX_CLOUD_DEPTH, MAX_LEAF_SPHERES, SphereAccel, SphereCloud};
 
 /// A world without entities and with every resource of a scene at its default.
 pub fn empty_world() -> World {
@@ -67,6 +70,7 @@ pub fn empty_world() -> World {
     world.init_resource::<Assets>();
     world.init_resource::<Environment>();
     world.init_resource::<RenderSettings>();
+    world.init_resource::<SphereCloud>();
     world
 }
 

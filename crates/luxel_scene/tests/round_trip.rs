@@ -67,6 +67,7 @@ fn assert_same(a: &World, b: &World) {
     assert_eq!(a.resource::<Assets>(), b.resource::<Assets>());
     assert_eq!(a.resource::<Environment>(), b.resource::<Environment>());
     assert_eq!(a.resource::<RenderSettings>(), b.resource::<RenderSettings>());
+    assert_eq!(a.resource::<SphereCloud>(), b.resource::<SphereCloud>());
     assert_eq!(a.resource::<StableIds>(), b.resource::<StableIds>());
     assert_eq!(world_hash(a).unwrap(), world_hash(b).unwrap());
 }
@@ -211,6 +212,14 @@ fn any_settings() -> impl Strategy<Value = RenderSettings> {
     )
 }
 
+fn any_sphere_cloud() -> impl Strategy<Value = SphereCloud> {
+    let accel = prop::sample::select(SphereAccel::NAMES).prop_map(|(_, accel)| accel);
+    let given = (accel, 0..=MAX_CLOUD_DEPTH, 0..=MAX_LEAF_SPHERES);
+    let given =
+        given.prop_map(|(accel, max_depth, min_spheres)| SphereCloud { accel, max_depth, min_spheres });
+    prop_oneof![1 => Just(SphereCloud::default()), 4 => given]
+}
+
 /// A world with assets of every kind of source, the files in `folder`.
 fn build(folder: &Path, entities: &[AnyEntity], environment: Environment, settings: RenderSettings) -> World {
     let mut world = empty_world();
@@ -290,9 +299,11 @@ proptest! {
         entities in proptest::collection::vec(any_entity(), 0..24),
         environment in any_environment(),
         settings in any_settings(),
+        sphere_cloud in any_sphere_cloud(),
     ) {
         let folder = tempfile::tempdir().unwrap();
-        let world = build(folder.path(), &entities, environment, settings);
+        let mut world = build(folder.path(), &entities, environment, settings);
+        world.insert_resource(sphere_cloud);
         let first = folder.path().join("first.ron");
         save(&world, &first).unwrap();
         let loaded = load_new(&first);
@@ -317,6 +328,31 @@ fn the_hash_notices_a_single_bit() {
     };
     assert_eq!(world_with(1.0), world_with(1.0));
     assert_ne!(world_with(1.0), world_with(1.0 + f64::EPSILON));
+}
+
+#[test]
+fn the_sphere_cloud_is_saved_and_hashed_only_where_it_is_not_the_default() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.ron");
+    let mut world = empty_world();
+    let mut saved = |cloud: SphereCloud| {
+        world.insert_resource(cloud);
+        save(&world, &path).unwrap();
+        (fs::read_to_string(&path).unwrap(), world_hash(&world).unwrap())
+    };
+    let (text, hash) = saved(SphereCloud::default());
+    assert!(!text.contains("sphere_cloud"), "{text}");
+    for cloud in [
+        SphereCloud { accel: SphereAccel::Bvh, ..SphereCloud::default() },
+        SphereCloud { max_depth: 3, ..SphereCloud::default() },
+        SphereCloud { min_spheres: 1, ..SphereCloud::default() },
+    ] {
+        let (text, other_hash) = saved(cloud);
+        assert!(text.contains("sphere_cloud: (") && hash != other_hash, "{text}");
+    }
+    fs::write(&path, "(version: 1, sphere_cloud: (accel: Bvh, max_depth: 8))").unwrap();
+    let expected = SphereCloud { accel: SphereAccel::Bvh, max_depth: 8, ..SphereCloud::default() };
+    assert_eq!(*load_new(&path).resource::<SphereCloud>(), expected);
 }
 
 #[test]

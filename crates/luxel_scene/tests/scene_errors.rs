@@ -99,6 +99,8 @@ const FILE_MISTAKES: &[(&str, &str)] = &[
     ("settings: (height: 16385)", "settings: height must be in 1 to 16384"),
     ("settings: (spp: 0)", "settings: spp must be in 1 to"),
     ("settings: (exposure: NaN)", "settings: exposure must be in -64.0 to 64.0, but is NaN"),
+    ("sphere_cloud: (max_depth: 21)", "sphere_cloud: max_depth must be in 0 to 20, but is 21"),
+    ("sphere_cloud: (min_spheres: 65536)", "sphere_cloud: min_spheres must be in 0 to 65535, but is 65536"),
     ("meshes: {0: Quad}", "mesh 0: id must be in 1 to"),
     ("meshes: {1: Icosphere(subdivisions: 9)}", "mesh 1: subdivisions must be in 0 to 8"),
     ("meshes: {1: TorusKnot(p: 0, q: 3, tube: 0.1, segments: 9, sides: 9)}", "mesh 1: p must be"),
@@ -148,6 +150,8 @@ fn syntax_errors_name_line_and_column() {
         ("(version: 1, entities: [(sphere: (radius: 1, colour: 2))])", "bad.ron:1:"),
         ("(version: 1, entities: [(material: (surface: Lambert(albedo: (1, 1, 1), x: 2)))])", "bad.ron:1:"),
         ("(version: 1, settings: (tone_map: Filmic))", "bad.ron:1:35"),
+        ("(version: 1, sphere_cloud: (max_depth: -1))", "bad.ron:1:"),
+        ("(version: 1, sphere_cloud: (depth: 1))", "bad.ron:1:"),
         ("(entities: [])", "bad.ron:1:"),
         ("\u{FEFF}rubbish", "bad.ron:1:"),
         ("\0\0\0\0", "bad.ron:1:"),
@@ -157,6 +161,11 @@ fn syntax_errors_name_line_and_column() {
     }
     let unknown = load_text("(version: 1, entities: [(sphere: (radius: 1), colour: 2)])").err().unwrap();
     assert!(unknown.contains("colour"), "{unknown}");
+    let unknown = load_text("(version: 1, sphere_cloud: (accel: Kdtree))").err().unwrap();
+    assert!(unknown.starts_with("bad.ron:1:") && unknown.contains("Kdtree"), "{unknown}");
+    for known in ["Auto", "Naive", "OctreeBase", "OctreeSeed", "Octree", "Bvh"] {
+        assert!(unknown.contains(&format!("`{known}`")), "{unknown}");
+    }
 }
 
 #[test]

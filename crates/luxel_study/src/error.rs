@@ -1,10 +1,12 @@
-//! Everything that can go wrong with the pictures that a study reads and compares.
+//! Everything that can go wrong with the pictures that are compared, and with a study and its records.
 
 use std::path::PathBuf;
 
+use luxel_engine::EngineError;
+
 use crate::Encoding;
 
-/// Why a picture could not be read or two pictures could not be compared.
+/// Why two pictures could not be compared or a study could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// The file could not be opened or read.
@@ -61,4 +63,34 @@ pub enum StudyError {
         /// The three channels of that pixel.
         value: [f32; 3],
     },
+    /// A line of a list of runs is no run.
+    #[error("{}, line {line}: {reason}", path.display())]
+    Record {
+        /// The file as it was named by the caller.
+        path: PathBuf,
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A file or folder of a study cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// A scene of a study cannot be traced.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// A run cannot be put into JSON.
+    #[error("a run cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A run cannot be put into a table.
+    #[error("a run cannot be written as CSV: {0}")]
+    Csv(#[from] csv::Error),
+    /// A chart or picture of the page cannot be made.
+    #[error("the page cannot be made: {0}")]
+    Page(String),
 }

@@ -20,6 +20,7 @@ mod compare;
 mod error;
 mod flip;
 mod image;
+pub mod octree;
 mod plane;
 mod read;
 mod ssim;

@@ -1,4 +1,4 @@
-//! The skip-pointer checker (robustness.md, B13), for any tree of [`BvhNode`]s.
+//! The checker of links, leaves and boxes (robustness.md, B13), for any tree of [`BvhNode`]s.
 use luxel_flat::{BvhNode, MAX_LEAF_SIZE};
 use luxel_geom::Aabb;
 
@@ -8,16 +8,13 @@ const STRUCTURE: &str = "bvh";
 
 /// Edges from the root to the deepest leaf; 0 for a tree of one node or none.
 pub fn depth(nodes: &[BvhNode]) -> u32 {
-    let mut ends: Vec<u32> = Vec::new();
-    let mut deepest = 0;
+    let mut depths = vec![0; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
-        while ends.last().is_some_and(|&end| end as usize <= index) {
-            ends.pop();
+        for child in children(node).into_iter().flatten() {
+            depths[child] = depths[index] + 1;
         }
-        deepest = deepest.max(ends.len());
-        ends.push(node.skip);
     }
-    deepest as u32
+    depths.into_iter().max().unwrap_or(0)
 }
 
 /// Checks a tree over `primitive_count` primitives; `box_of` gives the box of a leaf's entry, `None` if the
@@ -35,66 +32,64 @@ pub(crate) fn validate_tree(
         "no nodes if and only if no primitives",
     )?;
     for index in 0..nodes.len() {
-        check_skip(nodes, index)?;
+        check_content(nodes, index)?;
     }
-    for index in 0..nodes.len() {
-        check_children(nodes, index)?;
-    }
-    check_orders(nodes)?;
+    check_parents(nodes)?;
+    check_skips(nodes)?;
     check_primitives(nodes, primitive_count)?;
     check_boxes(nodes, box_of)
 }
 
-/// A node's skip by itself.
-fn check_skip(nodes: &[BvhNode], index: usize) -> Result<(), AccelError> {
+/// The size of a leaf; where an inner node's children stand.
+fn check_content(nodes: &[BvhNode], index: usize) -> Result<(), AccelError> {
     let require = |holds, rule| AccelError::require(holds, STRUCTURE, index, rule);
-    let end = nodes[index].skip as usize;
-    require(end > index, "skip is not beyond the node")?;
-    require(end <= nodes.len(), "skip is beyond the tree")?;
-    if index == 0 {
-        require(end == nodes.len(), "the root does not end with the tree")?;
-    }
-    Ok(())
-}
-
-/// The size of a leaf; where an inner node's children start and end.
-fn check_children(nodes: &[BvhNode], index: usize) -> Result<(), AccelError> {
-    let require = |holds, rule| AccelError::require(holds, STRUCTURE, index, rule);
-    let node = &nodes[index];
-    let end = node.skip as usize;
-    if node.is_leaf() {
-        require(end == index + 1, "a leaf has children")?;
-        let (_, count) = node.primitives();
-        return require((1..=MAX_LEAF_SIZE).contains(&count), "leaf size out of bounds");
-    }
-    let [first, second] = children(nodes, index).ok_or(AccelError::Broken {
-        structure: STRUCTURE,
-        index: index as u32,
-        rule: "an inner node has not two children",
-    })?;
-    require(first < second && second < end, "the second child lies outside the node")?;
-    require(nodes[second].skip as usize == end, "the second child does not end with the node")
-}
-
-/// The children of an inner node, if they are inside the array.
-fn children(nodes: &[BvhNode], index: usize) -> Option<[usize; 2]> {
-    let second = nodes.get(index + 1)?.skip as usize;
-    (second < nodes.len()).then_some([index + 1, second])
-}
-
-/// Following children and following skips must visit the same nodes in the same order.
-fn check_orders(nodes: &[BvhNode]) -> Result<(), AccelError> {
-    let mut by_skip = 0;
-    let mut pending = if nodes.is_empty() { vec![] } else { vec![0] };
-    while let Some(index) = pending.pop() {
-        AccelError::require(by_skip == index, STRUCTURE, index, "children and skips visit different nodes")?;
-        let node = &nodes[index];
-        by_skip = if node.is_leaf() { node.skip as usize } else { index + 1 };
-        if !node.is_leaf() {
-            pending.extend(children(nodes, index).into_iter().flatten().rev());
+    match children(&nodes[index]) {
+        Some([first, second]) => {
+            require(first > index, "a child does not stand behind its parent")?;
+            require(second < nodes.len(), "a child stands beyond the tree")
+        }
+        None => {
+            let (_, count) = nodes[index].primitives();
+            require((1..=MAX_LEAF_SIZE).contains(&count), "leaf size out of bounds")
         }
     }
-    AccelError::require(by_skip == nodes.len(), STRUCTURE, by_skip, "some nodes are not visited")
+}
+
+/// The two children of an inner node.
+fn children(node: &BvhNode) -> Option<[usize; 2]> {
+    let first = node.first_child() as usize;
+    (!node.is_leaf()).then_some([first, first + 1])
+}
+
+/// Every node but the root must be the child of one node. Children stand behind their parents, so there are no
+/// cycles, and every node is below the root.
+fn check_parents(nodes: &[BvhNode]) -> Result<(), AccelError> {
+    let mut has_parent = vec![false; nodes.len()];
+    for child in nodes.iter().filter_map(children).flatten() {
+        let fresh = !std::mem::replace(&mut has_parent[child], true);
+        AccelError::require(fresh, STRUCTURE, child, "a node has two parents")?;
+    }
+    match has_parent.iter().skip(1).position(|has| !has) {
+        Some(orphan) => AccelError::require(false, STRUCTURE, orphan + 1, "a node has no parent"),
+        None => Ok(()),
+    }
+}
+
+/// Following skips must visit the nodes in the order of following children.
+fn check_skips(nodes: &[BvhNode]) -> Result<(), AccelError> {
+    let require = |index: usize, skip: usize, rule| {
+        AccelError::require(nodes[index].skip as usize == skip, STRUCTURE, index, rule)
+    };
+    if !nodes.is_empty() {
+        require(0, nodes.len(), "the root does not end with the tree")?;
+    }
+    for node in nodes {
+        if let Some([first, second]) = children(node) {
+            require(first, second, "a first child does not skip to its sibling")?;
+            require(second, node.skip as usize, "a second child does not end with its parent")?;
+        }
+    }
+    Ok(())
 }
 
 /// Each primitive must be in exactly one leaf.
@@ -129,7 +124,7 @@ fn check_boxes(nodes: &[BvhNode], box_of: impl Fn(u32) -> Option<Aabb<f32>>) -> 
             require(union.is_some(), "a leaf names a primitive that does not exist")?;
             require(union == Some(stored), "a leaf's box is not the union of its primitives")?;
         } else {
-            let below = children(nodes, index).map(|c| c.map(|child| bounds(&nodes[child])));
+            let below = children(node).map(|c| c.map(|child| bounds(&nodes[child])));
             let contained = below.is_some_and(|c| c.iter().all(|b| stored.contains(b)));
             require(contained, "a child's box leaves its parent's")?;
             require(
@@ -156,24 +151,19 @@ mod tests {
         (0..60).map(|i| Aabb { lo: corner(i), hi: corner(i) + Vec3::ONE }).collect()
     }
 
-    /// The first inner node whose second child is an inner node.
-    fn inner_with_inner(bvh: &Bvh) -> usize {
-        let second = |i: usize| bvh.nodes[i + 1].skip as usize;
-        let is_inner = |i: usize| !bvh.nodes[i].is_leaf();
-        (1..bvh.nodes.len()).find(|&i| is_inner(i) && is_inner(second(i))).unwrap()
-    }
-
     #[test]
     fn every_damaged_field_is_found() {
         type Damage = fn(&mut Bvh, usize, usize);
-        let damages: [(Damage, &str); 14] = [
-            (|b, inner, _| b.nodes[inner].skip = inner as u32, "skip is not beyond the node"),
-            (|b, inner, _| b.nodes[inner].skip = 1 << 20, "skip is beyond the tree"),
+        let damages: [(Damage, &str); 16] = [
+            (|b, inner, _| b.nodes[inner].skip -= 1, "a first child does not skip to its sibling"),
+            (|b, inner, _| b.nodes[inner + 1].skip += 1, "a second child does not end with its parent"),
             (|b, _, _| b.nodes[0].skip -= 1, "the root does not end with the tree"),
-            (|b, _, _| b.nodes.last_mut().unwrap().leaf = 0, "an inner node has not two children"),
+            (|b, inner, _| b.nodes[inner].leaf = 0, "a child does not stand behind its parent"),
+            (|b, inner, _| b.nodes[inner].leaf = inner as u32, "a child does not stand behind its parent"),
+            (|b, inner, _| b.nodes[inner].leaf = b.nodes.len() as u32 - 1, "a child stands beyond the tree"),
+            (|b, inner, _| b.nodes[inner].leaf += 1, "a node has two parents"),
+            (|b, _, _| b.nodes.extend([b.nodes[b.nodes.len() - 1]; 2]), "a node has no parent"),
             (|b, _, leaf| b.nodes[leaf].leaf = 9 << 28, "leaf size out of bounds"),
-            (|b, _, leaf| b.nodes[leaf].leaf = 0, "the second child lies outside the node"),
-            (|b, inner, _| b.nodes[inner].skip -= 1, "the second child does not end with the node"),
             (|b, _, leaf| b.nodes[leaf].leaf = b.nodes[leaf - 1].leaf, "a primitive is in two leaves"),
             (|b, _, leaf| b.nodes[leaf].leaf -= 1 << 28, "the leaves hold another number of primitives"),
             (|b, _, leaf| b.nodes[leaf].lo[0] -= 1e-3, "a leaf's box is not the union of its primitives"),
@@ -185,7 +175,8 @@ mod tests {
         let options = BvhOptions { traversal_cost: 6.0, ..Default::default() };
         let bvh = build_bvh(&boxes(), &options).unwrap();
         assert_eq!(bvh.validate(&boxes()), Ok(()));
-        let inner = inner_with_inner(&bvh);
+        // A first child with children, and a leaf behind a leaf.
+        let inner = (1..bvh.nodes.len()).step_by(2).find(|&i| !bvh.nodes[i].is_leaf()).unwrap();
         let leaf = (1..bvh.nodes.len())
             .find(|&i| {
                 bvh.nodes[i].is_leaf() && bvh.nodes[i - 1].is_leaf() && bvh.nodes[i].primitives().1 > 1

@@ -19,13 +19,15 @@ pub(super) struct Cell {
     center: Vec3,
     half_extent: f32,
     depth: u32,
+    max_depth: u32,
     root: RootCell,
 }
 
 impl RootCell {
-    /// The cell as that of node 0.
-    pub(super) fn cell(self) -> Cell {
-        Cell { center: self.center, half_extent: self.half_extent, depth: 0, root: self }
+    /// The cell as that of node 0, with the deepest level that may follow.
+    pub(super) fn cell(self, max_depth: u32) -> Cell {
+        let max_depth = max_depth.min(MAX_OCTREE_DEPTH);
+        Cell { center: self.center, half_extent: self.half_extent, depth: 0, max_depth, root: self }
     }
 
     /// True if a point lies in the cube, its surface included.
@@ -38,7 +40,7 @@ impl Cell {
     /// The child that a sphere belongs to or below, or `None` if it belongs to this cell's node.
     pub(super) fn octant_for(&self, sphere: &SphereRecord) -> Option<u32> {
         let child_edge = self.half_extent;
-        let fits = self.depth < MAX_OCTREE_DEPTH && 2.0 * sphere.radius <= child_edge;
+        let fits = self.depth < self.max_depth && 2.0 * sphere.radius <= child_edge;
         let center = Vec3::from(sphere.center);
         (fits && self.root.contains(center)).then(|| center.cmpge(self.center).bitmask())
     }
@@ -50,7 +52,7 @@ impl Cell {
             if octant >> bit & 1 == 1 { half_extent } else { -half_extent }
         };
         let center = self.center + Vec3::new(side(0), side(1), side(2));
-        Self { center, half_extent, depth: self.depth + 1, root: self.root }
+        Self { center, half_extent, depth: self.depth + 1, ..*self }
     }
 }
 
@@ -61,7 +63,7 @@ mod tests {
     const ROOT: RootCell = RootCell { center: Vec3::ZERO, half_extent: 4.0 };
 
     fn octant(center: [f32; 3], radius: f32) -> Option<u32> {
-        ROOT.cell().octant_for(&SphereRecord { center, radius, ..Default::default() })
+        ROOT.cell(MAX_OCTREE_DEPTH).octant_for(&SphereRecord { center, radius, ..Default::default() })
     }
 
     #[test]
@@ -86,7 +88,7 @@ mod tests {
 
     #[test]
     fn children_are_the_eighths() {
-        let child = ROOT.cell().child(0b101);
+        let child = ROOT.cell(3).child(0b101);
         assert_eq!((child.center, child.half_extent, child.depth), (Vec3::new(2.0, -2.0, 2.0), 2.0, 1));
     }
 }

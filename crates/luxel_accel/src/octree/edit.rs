@@ -2,9 +2,10 @@
 use glam::Vec3;
 use luxel_flat::SphereRecord;
 
+use super::SphereOctree;
 use super::cell::Cell;
-use super::{FREE_SPHERE, SphereOctree, check_sphere, sphere_bounds};
 use crate::AccelError;
+use crate::slots::{FREE_SPHERE, check_free, check_sphere, is_other, occupied, sphere_bounds, store};
 
 impl SphereOctree {
     /// Puts a sphere into a free slot; its `next` and `node` are ignored.
@@ -12,9 +13,9 @@ impl SphereOctree {
     /// # Errors
     /// [`AccelError::SlotTaken`], [`AccelError::BadSphere`].
     pub fn insert(&mut self, slot: u32, sphere: SphereRecord, revision: u64) -> Result<(), AccelError> {
-        self.check_free(slot)?;
+        check_free(&self.spheres, slot)?;
         check_sphere(slot, sphere.center.into(), sphere.radius)?;
-        self.store(slot, sphere, revision);
+        store(&mut self.spheres, slot, sphere, revision);
         self.attach(slot, revision);
         Ok(())
     }
@@ -24,7 +25,7 @@ impl SphereOctree {
     /// # Errors
     /// [`AccelError::SlotEmpty`].
     pub fn remove(&mut self, slot: u32, revision: u64) -> Result<(), AccelError> {
-        self.occupied(slot)?;
+        occupied(&self.spheres, slot)?;
         self.detach(slot, revision);
         *self.spheres.get_mut(slot as usize, revision) = FREE_SPHERE;
         Ok(())
@@ -35,11 +36,10 @@ impl SphereOctree {
     /// # Errors
     /// [`AccelError::SlotEmpty`], [`AccelError::BadSphere`].
     pub fn update(&mut self, slot: u32, center: Vec3, radius: f32, revision: u64) -> Result<(), AccelError> {
-        let old = self.occupied(slot)?;
+        let old = occupied(&self.spheres, slot)?;
         check_sphere(slot, center, radius)?;
         let new = SphereRecord { center: center.into(), radius, ..old };
-        // Compared as bytes: 0 and −0 are different content.
-        if bytemuck::bytes_of(&new) == bytemuck::bytes_of(&old) {
+        if !is_other(&new, &old) {
             return Ok(());
         }
         let (target, cell) = self.descend(&new);
@@ -63,21 +63,21 @@ impl SphereOctree {
     /// # Errors
     /// [`AccelError::SlotEmpty`].
     pub fn set_material(&mut self, slot: u32, material: u32, revision: u64) -> Result<(), AccelError> {
-        let old = self.occupied(slot)?;
+        let old = occupied(&self.spheres, slot)?;
         self.spheres.set(slot as usize, SphereRecord { material, ..old }, revision);
         Ok(())
     }
 
     /// Subdivides, from the root's chain downwards, and fits every box.
     pub(super) fn grow_whole(&mut self, revision: u64) {
-        if !self.split_if_crowded(0, &self.root.cell(), revision) {
+        if !self.split_if_crowded(0, &self.root_cell(), revision) {
             self.refit(0, revision);
         }
     }
 
     /// The deepest existing node that a sphere may be in, and its cell.
     fn descend(&mut self, sphere: &SphereRecord) -> (u32, Cell) {
-        let (mut node, mut cell) = (0, self.root.cell());
+        let (mut node, mut cell) = (0, self.root_cell());
         self.work.nodes_touched += 1;
         while self.child_count(node) > 0
             && let Some(octant) = cell.octant_for(sphere)

@@ -2,7 +2,8 @@
 use luxel_flat::NONE;
 use luxel_geom::Aabb;
 
-use super::{SphereOctree, node_bounds, sphere_bounds};
+use super::{SphereOctree, node_bounds};
+use crate::slots::sphere_bounds;
 
 impl SphereOctree {
     /// Recomputes a node's box, count and mask from its chain and its children.

@@ -2,22 +2,9 @@
 use luxel_flat::{NONE, OctreeNode, SphereRecord};
 
 use super::cell::Cell;
-use super::{FREE_SPHERE, MIN_SPHERES, SphereOctree, empty_node};
+use super::{SphereOctree, empty_node};
 
 impl SphereOctree {
-    /// Writes a sphere's record, not yet in any chain.
-    pub(super) fn store(&mut self, slot: u32, record: SphereRecord, revision: u64) {
-        let slot = slot as usize;
-        let old_len = self.spheres.len();
-        if slot >= old_len {
-            self.spheres.resize(slot + 1, revision);
-            for gap in old_len..slot {
-                *self.spheres.get_mut(gap, revision) = FREE_SPHERE;
-            }
-        }
-        *self.spheres.get_mut(slot, revision) = SphereRecord { next: NONE, node: NONE, ..record };
-    }
-
     /// A node to write to.
     pub(super) fn node_mut(&mut self, node: u32, revision: u64) -> &mut OctreeNode {
         self.work.nodes_touched += 1;
@@ -60,7 +47,7 @@ impl SphereOctree {
     pub(super) fn split_if_crowded(&mut self, node: u32, cell: &Cell, revision: u64) -> bool {
         self.work.spheres_touched += u64::from(self.node(node).sphere_count);
         let goes_deeper = |&slot: &u32| cell.octant_for(self.sphere(slot)).is_some();
-        if self.chain(node).filter(goes_deeper).nth(MIN_SPHERES).is_none() {
+        if self.chain(node).filter(goes_deeper).nth(self.options.min_spheres as usize).is_none() {
             return false;
         }
         let first_child = self.allocate_block(node, revision);

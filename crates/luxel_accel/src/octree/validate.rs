@@ -3,8 +3,9 @@ use luxel_flat::{NONE, OctreeNode, SphereRecord};
 use luxel_geom::Aabb;
 
 use super::cell::Cell;
-use super::{FREE_SPHERE, MIN_SPHERES, RootCell, SphereOctree, empty_node, node_bounds, sphere_bounds};
+use super::{OctreeOptions, RootCell, SphereOctree, empty_node, node_bounds};
 use crate::AccelError;
+use crate::slots::{FREE_SPHERE, sphere_bounds};
 
 const STRUCTURE: &str = "octree";
 
@@ -14,7 +15,7 @@ impl SphereOctree {
     /// # Errors
     /// [`AccelError::Broken`] with the first node or sphere at fault.
     pub fn validate(&self) -> Result<(), AccelError> {
-        let used = validate_octree(self.nodes.as_slice(), self.spheres.as_slice(), self.root)?;
+        let used = validate_octree(self.nodes.as_slice(), self.spheres.as_slice(), self.root, self.options)?;
         let mut free = self.free_blocks.clone();
         free.sort_unstable();
         let unused: Vec<u32> =
@@ -31,16 +32,18 @@ pub fn validate_octree(
     nodes: &[OctreeNode],
     spheres: &[SphereRecord],
     root: RootCell,
+    options: OctreeOptions,
 ) -> Result<Vec<bool>, AccelError> {
     AccelError::require(nodes.len() % 8 == 1, STRUCTURE, 0, "not one root and blocks of eight")?;
     let mut walk = Walk {
         nodes,
         spheres,
+        min_spheres: options.min_spheres as usize,
         path: Vec::new(),
         is_used: vec![false; nodes.len()],
         is_chained: vec![false; spheres.len()],
     };
-    walk.visit(0, NONE, root.cell())?;
+    walk.visit(0, NONE, root.cell(options.max_depth))?;
     walk.check_unused()?;
     Ok(walk.is_used)
 }
@@ -49,6 +52,7 @@ pub fn validate_octree(
 struct Walk<'a> {
     nodes: &'a [OctreeNode],
     spheres: &'a [SphereRecord],
+    min_spheres: usize,
     path: Vec<(Cell, u32)>,
     is_used: Vec<bool>,
     is_chained: Vec<bool>,
@@ -65,7 +69,7 @@ impl Walk<'_> {
             self.check_place(slot, &cell, record.first_child != NONE)?;
         }
         let deeper = chain.iter().filter(|&&s| cell.octant_for(&self.spheres[s as usize]).is_some()).count();
-        require(deeper <= MIN_SPHERES, "a crowded node is not subdivided")?;
+        require(deeper <= self.min_spheres, "a crowded node is not subdivided")?;
         self.visit_children(node, &record, cell)?;
         self.check_summary(node, &record, &chain)
     }
@@ -167,6 +171,7 @@ impl Walk<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::slots::store;
     use glam::Vec3;
 
     const ROOT: RootCell = RootCell { center: Vec3::ZERO, half_extent: 4.0 };
@@ -179,7 +184,7 @@ mod tests {
         });
         let large = SphereRecord { center: [0.5; 3], radius: 3.0, ..Default::default() };
         let spheres: Vec<_> = (0..).zip(small.chain([large])).collect();
-        SphereOctree::build(ROOT, &spheres, 1).unwrap()
+        SphereOctree::build(ROOT, OctreeOptions::default(), &spheres, 1).unwrap()
     }
 
     /// A node below the root that has children.
@@ -235,16 +240,16 @@ mod tests {
     fn an_orphan_is_found() {
         let mut damaged = octree();
         let orphan = SphereRecord { radius: 1.0, next: NONE, node: NONE, ..Default::default() };
-        damaged.store(126, orphan, 2);
+        store(&mut damaged.spheres, 126, orphan, 2);
         assert_eq!(rule(&damaged), Some("a sphere is in no chain"));
     }
 
     #[test]
     fn a_crowded_node_is_found() {
-        let mut damaged = SphereOctree::new(ROOT);
+        let mut damaged = SphereOctree::new(ROOT, OctreeOptions::default());
         for slot in 0..9 {
             let sphere = SphereRecord { center: [1.0; 3], radius: 0.5, ..Default::default() };
-            damaged.store(slot, sphere, 1);
+            store(&mut damaged.spheres, slot, sphere, 1);
             damaged.link(0, slot, 1);
         }
         damaged.refit(0, 1);

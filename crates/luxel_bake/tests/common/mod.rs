@@ -78,6 +78,7 @@ fn copy_of(world: &mut World) -> World {
     copy.insert_resource(world.resource::<Assets>().clone());
     copy.insert_resource(*world.resource::<luxel_scene::Environment>());
     copy.insert_resource(*world.resource::<luxel_scene::RenderSettings>());
+    copy.insert_resource(*world.resource::<luxel_scene::SphereCloud>());
     let entities: Vec<Entity> =
         world.query_filtered::<Entity, With<luxel_scene::StableId>>().iter(world).collect();
     // Spawned in another order, so that entity numbers and slots differ.

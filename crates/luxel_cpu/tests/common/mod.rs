@@ -1,7 +1,11 @@
 //! Flat scenes made straight from the builders, and the standing oracle: accelerated equals naive, bit for bit.
 #![allow(dead_code, reason = "each test binary uses its own part")]
+pub(crate) mod clouds;
+
 use glam::{DAffine3, UVec3, Vec3};
-use luxel_accel::{BvhOptions, RootCell, SphereOctree, Svo, SvoVoxel, build_mesh, build_svo, build_tlas};
+use luxel_accel::{
+    BvhOptions, RootCell, SphereOptions, SphereStructure, Svo, SvoVoxel, build_mesh, build_svo, build_tlas,
+};
 use luxel_cpu::naive::Naive;
 use luxel_cpu::{Exclusion, Hit, traverse};
 use luxel_flat::{Counters, FlatScene, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SphereRecord};
@@ -39,22 +43,27 @@ impl SceneBuilder {
         self.mesh_with_ids(mesh, &mesh.ids(), world_from_object)
     }
 
-    /// Adds the sphere cloud, spheres in slots 0, 1, 2, …
-    pub(crate) fn spheres(mut self, root: RootCell, spheres: &[SphereRecord]) -> Self {
+    /// Adds the sphere cloud, spheres in slots 0, 1, 2, …, under the default structure.
+    pub(crate) fn spheres(self, root: RootCell, spheres: &[SphereRecord]) -> Self {
         let in_slots: Vec<_> = (0..).zip(spheres.iter().copied()).collect();
-        let octree = SphereOctree::build(root, &in_slots, 1).unwrap();
-        octree.validate().unwrap();
-        self = self.octree(&octree);
-        self
+        self.cloud(&SphereStructure::build(SphereOptions::default(), root, &in_slots, 1).unwrap())
     }
 
-    /// Adds the sphere cloud from its octree.
-    pub(crate) fn octree(mut self, octree: &SphereOctree) -> Self {
-        self.flat.octree_nodes = octree.nodes().clone();
-        self.flat.spheres = octree.spheres().clone();
-        let node_count = octree.nodes().len() as u32;
-        let instance = Instance { kind: KIND_SPHERES, node_count, ..Instance::default() };
-        self.place(instance, DAffine3::IDENTITY, &octree.bounds())
+    /// Adds the sphere cloud as its structure has it.
+    pub(crate) fn cloud(mut self, structure: &SphereStructure) -> Self {
+        structure.validate().unwrap();
+        self.flat.sphere_accel = structure.options().accel;
+        self.flat.spheres = structure.spheres().clone();
+        self.flat.octree_nodes = structure.octree_nodes().clone();
+        self.flat.sphere_nodes = structure.sphere_nodes().clone();
+        self.flat.leaf_spheres = structure.leaf_spheres().clone();
+        let instance = Instance {
+            kind: KIND_SPHERES,
+            node_count: structure.node_count(),
+            primitive_count: structure.spheres().len() as u32,
+            ..Instance::default()
+        };
+        self.place(instance, DAffine3::IDENTITY, &structure.bounds())
     }
 
     /// Adds a voxel volume.

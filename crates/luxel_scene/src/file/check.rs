@@ -9,6 +9,7 @@ use crate::assets::{MeshSource, VolumeSource};
 use crate::material::{Material, Surface};
 use crate::procedural::Scatter;
 use crate::resources::{Environment, RenderSettings};
+use crate::sphere_cloud::{MAX_CLOUD_DEPTH, MAX_LEAF_SPHERES, SphereCloud};
 
 use super::record::{CameraRecord, EntityRecord, SceneFile, TransformRecord, is_nearly_unit};
 
@@ -75,6 +76,7 @@ pub(super) fn check_sections(file: &SceneFile) -> Result<(), (String, Flaw)> {
     };
     check_environment(&file.environment).map_err(at("environment"))?;
     check_settings(&file.settings).map_err(at("settings"))?;
+    check_sphere_cloud(&file.sphere_cloud).map_err(at("sphere_cloud"))?;
     for (id, source) in &file.meshes {
         let place = format!("mesh {}", id.0);
         between("id", id.0, 1..=MAX_ID).map_err(at(&place))?;
@@ -113,6 +115,11 @@ fn check_settings(settings: &RenderSettings) -> Checked {
     between("spp", settings.spp, 1..=u32::MAX)?;
     between("max_depth", settings.max_depth, 0..=65535)?;
     between("exposure", settings.exposure, -64.0..=64.0)
+}
+
+fn check_sphere_cloud(cloud: &SphereCloud) -> Checked {
+    between("max_depth", cloud.max_depth, 0..=MAX_CLOUD_DEPTH)?;
+    between("min_spheres", cloud.min_spheres, 0..=MAX_LEAF_SPHERES)
 }
 
 /// Everything about one entity that can be seen from it alone.

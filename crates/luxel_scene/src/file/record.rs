@@ -11,8 +11,11 @@ use crate::ids::StableId;
 use crate::material::Material;
 use crate::procedural::Scatter;
 use crate::resources::{Environment, RenderSettings};
+use crate::sphere_cloud::SphereCloud;
 
-/// The version that is written.
+/// The version that is written. A section that a file of this version lacks is at its default, and one at its
+/// default is not written where `skip_serializing_if` says so: sections that came later than version 1 did not
+/// change it.
 pub(super) const VERSION: u32 = 1;
 
 /// A whole scene file.
@@ -30,6 +33,9 @@ pub(super) struct SceneFile {
     pub(super) environment: Environment,
     #[serde(default)]
     pub(super) settings: RenderSettings,
+    /// The structure over the spheres.
+    #[serde(default, skip_serializing_if = "SphereCloud::is_default")]
+    pub(super) sphere_cloud: SphereCloud,
     /// The camera entity; without it the first one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) active_camera: Option<StableId>,

@@ -43,6 +43,7 @@ pub(super) fn fill(world: &mut World, file: &SceneFile, next_id: u32, assets: As
     world.insert_resource(assets);
     world.insert_resource(file.environment);
     world.insert_resource(file.settings);
+    world.insert_resource(file.sphere_cloud);
 }
 
 fn spawn_record(world: &mut World, id: StableId, record: &EntityRecord) -> Entity {
@@ -95,6 +96,7 @@ pub(super) fn describe(world: &World) -> SceneFile {
         next_asset: Some(assets.peek()),
         environment: world.get_resource().copied().unwrap_or_default(),
         settings: world.get_resource().copied().unwrap_or_default(),
+        sphere_cloud: world.get_resource().copied().unwrap_or_default(),
         active_camera,
         meshes: meshes.collect(),
         volumes: volumes.collect(),

@@ -1,0 +1,203 @@
+//! Measured frames: one world and one tracer that are kept while spheres, structure and settings change.
+//!
+//! A frame is the whole picture at the samples that were asked for; the samples of the next frame are the next of
+//! the same film, so they draw other random numbers. Its time is that of tracing alone: baking, upload and
+//! compilation are over before it starts.
+use std::sync::Arc;
+use std::time::Instant;
+
+use bevy_ecs::prelude::*;
+use luxel_accel::{RootCell, SphereOptions, SphereStructure};
+use luxel_bake::SphereFacts;
+use luxel_film::tracer::{BackendFacts, TraceRequest};
+use luxel_film::{Film, ImageError, View};
+use luxel_flat::{Counter, Counters, FlatScene, SphereRecord};
+use luxel_scene::{RenderSettings, SphereAccel, SphereCloud};
+
+use crate::output::Picture;
+use crate::sphere_field::{self, SphereField};
+use crate::{BackendChoice, ChosenTracer, Engine, EngineError};
+
+/// Under which settings frames are traced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameSettings {
+    /// The structure over the spheres.
+    pub cloud: SphereCloud,
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// Samples per pixel of a frame.
+    pub spp: u32,
+    /// How often light may scatter after the first hit.
+    pub max_depth: u32,
+    /// Seed of the random numbers.
+    pub seed: u32,
+    /// First hits are recorded.
+    pub first_hits: bool,
+}
+
+/// What one frame took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Seconds of tracing.
+    pub secs: f64,
+    /// What was counted.
+    pub counters: Counters,
+}
+
+/// A world of spheres, and the tracer that makes frames of it.
+pub struct FrameStage {
+    engine: Engine,
+    chosen: ChosenTracer,
+    scene: Arc<FlatScene>,
+    spp: u32,
+    /// Samples that every pixel has.
+    samples: u32,
+    counters: Counters,
+}
+
+impl FrameStage {
+    /// An empty world on a backend.
+    ///
+    /// # Errors
+    /// When the backend cannot be had.
+    pub fn open(backend: BackendChoice) -> Result<Self, EngineError> {
+        Ok(Self {
+            engine: Engine::over(sphere_field::stage(), std::path::Path::new("(octree study)"))?,
+            chosen: backend.open()?,
+            scene: Arc::default(),
+            spp: 1,
+            samples: 0,
+            counters: Counters::default(),
+        })
+    }
+
+    /// What frames are traced with.
+    pub fn facts(&self) -> BackendFacts {
+        self.chosen.tracer.facts()
+    }
+
+    /// Replaces the spheres. They are taken in without a structure, so that what [`FrameStage::set`] asks for next is
+    /// built anew, not edited.
+    ///
+    /// # Errors
+    /// When the scene cannot be baked.
+    pub fn fill(&mut self, field: SphereField) -> Result<(), EngineError> {
+        sphere_field::fill(&mut self.engine.world, field);
+        self.engine.world.resource_mut::<SphereCloud>().accel = SphereAccel::Naive;
+        self.scene = self.engine.bake()?;
+        Ok(())
+    }
+
+    /// Bakes under other settings and gives the scene to the tracer: a new film begins if anything differs.
+    ///
+    /// # Errors
+    /// When the scene cannot be baked or does not fit the device.
+    pub fn set(&mut self, settings: &FrameSettings) -> Result<(), EngineError> {
+        self.engine.world.resource_mut::<SphereCloud>().set_if_neq(settings.cloud);
+        let (width, height) = settings.size;
+        let FrameSettings { spp, max_depth, seed, .. } = *settings;
+        let other = RenderSettings { width, height, spp, max_depth, seed, ..self.engine.settings() };
+        self.engine.world.resource_mut::<RenderSettings>().set_if_neq(other);
+        self.scene = self.engine.bake()?;
+        let request = TraceRequest::new(Arc::clone(&self.scene)).with_aovs(settings.first_hits);
+        self.chosen.tracer.set_scene(request)?;
+        self.spp = spp;
+        // Not 0 if nothing differs from before, since then the film goes on.
+        self.samples = self.chosen.tracer.advance(0.0, 0)?.samples;
+        self.counters = self.chosen.tracer.stats().counters;
+        Ok(())
+    }
+
+    /// Traces one frame.
+    ///
+    /// # Errors
+    /// When the device fails.
+    pub fn frame(&mut self) -> Result<Frame, EngineError> {
+        self.samples += self.spp;
+        let start = Instant::now();
+        self.chosen.tracer.advance(f64::MAX, self.samples)?;
+        let secs = start.elapsed().as_secs_f64();
+        let total = self.chosen.tracer.stats().counters;
+        let counters = difference(&total, &self.counters);
+        self.counters = total;
+        Ok(Frame { secs, counters })
+    }
+
+    /// Facts about the structure that the scene has now.
+    pub fn structure(&self) -> SphereFacts {
+        self.engine.bake_report().sphere_cloud
+    }
+
+    /// Seconds that the structure alone takes to be built over the spheres of the scene.
+    ///
+    /// # Errors
+    /// When it cannot be built.
+    pub fn build_secs(&self) -> Result<f64, EngineError> {
+        let records = self.scene.spheres.as_slice().iter().enumerate();
+        let spheres: Vec<(u32, SphereRecord)> =
+            records.filter(|(_, s)| s.radius > 0.0).map(|(slot, s)| (slot as u32, *s)).collect();
+        let cloud = self.engine.world.resource::<SphereCloud>();
+        let options = SphereOptions {
+            accel: self.scene.sphere_accel,
+            max_depth: cloud.max_depth,
+            min_spheres: cloud.min_spheres,
+        };
+        let start = Instant::now();
+        let built = SphereStructure::build(options, root_of(&spheres), &spheres, 1);
+        let secs = start.elapsed().as_secs_f64();
+        match built {
+            Ok(_) => Ok(secs),
+            Err(error) => Err(EngineError::Setting(format!("the structure cannot be built: {error}"))),
+        }
+    }
+
+    /// The picture so far, ready to be shown.
+    ///
+    /// # Errors
+    /// When the film cannot be read back.
+    pub fn picture(&mut self) -> Result<Picture, EngineError> {
+        let film = self.film()?;
+        let pixels = self.engine.display().pixels(&film, View::PathTraced).unwrap_or_default();
+        Ok(Picture { width: film.width, height: film.height, pixels })
+    }
+
+    /// The relative error of the picture so far, estimated from its own samples (0.01 is 1 %).
+    ///
+    /// # Errors
+    /// When the film cannot be read back.
+    pub fn noise(&mut self) -> Result<f64, EngineError> {
+        let white = self.engine.display().white();
+        Ok(ImageError::of(&self.film()?, white).relative)
+    }
+
+    /// What the camera ray of each pixel met: stable id of the sphere, plus one; 0 for the sky. Empty if first hits
+    /// were not recorded.
+    ///
+    /// # Errors
+    /// When the film cannot be read back.
+    pub fn first_hits(&mut self) -> Result<Vec<u32>, EngineError> {
+        let hits = self.film()?.first_hits().unwrap_or_default();
+        Ok(hits.iter().map(|hit| if hit.instance == 0 { 0 } else { hit.primitive + 1 }).collect())
+    }
+
+    fn film(&mut self) -> Result<Film, EngineError> {
+        Ok(self.chosen.tracer.film()?)
+    }
+}
+
+/// A cube around the origin of the cloud's space that holds all spheres.
+fn root_of(spheres: &[(u32, SphereRecord)]) -> RootCell {
+    let reach = |sphere: &SphereRecord| {
+        sphere.center.iter().fold(0.0_f32, |most, c| most.max(c.abs())) + sphere.radius
+    };
+    let reach = spheres.iter().fold(0.0_f32, |most, (_, sphere)| most.max(reach(sphere)));
+    RootCell { center: glam::Vec3::ZERO, half_extent: reach.max(f32::MIN_POSITIVE).log2().ceil().exp2() }
+}
+
+fn difference(now: &Counters, before: &Counters) -> Counters {
+    let mut counters = Counters::default();
+    for counter in Counter::ALL {
+        counters[*counter] = now[*counter] - before[*counter];
+    }
+    counters
+}

@@ -1,0 +1,130 @@
+//! The scenes of the octree study, in memory: random spheres in a box, as in seed document 1 (II.A), and its three
+//! materials side by side.
+//!
+//! The box is always the same and the spheres fill always the same part of it, so that a picture stays as full of
+//! detail, and the camera where it is, from ten spheres to a million. (The report does not say how its spheres
+//! shrink, or its box grows, with their number.) No ground and no other object: rays meet spheres or the sky.
+use bevy_ecs::prelude::*;
+use glam::{DVec3, Vec3};
+use luxel_geom::rng::uniform4;
+use luxel_scene::{ActiveCamera, Camera, Material, Sphere, Transform};
+
+/// Half the edge of the box of centres, metres.
+const HALF_EDGE: f64 = 1.0;
+/// The part of the box that the spheres would fill if none overlapped.
+const FILLED: f64 = 0.03;
+/// Radii lie between these multiples of the one that fills the box.
+const RADIUS_SPREAD: (f64, f64) = (0.6, 1.3);
+/// Where the camera stands; it looks at the origin and sees the whole box and sky around it.
+const EYE: DVec3 = DVec3::new(0.9, 0.7, 3.7);
+
+/// A scene of the octree study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SphereField {
+    /// Three spheres: Lambert, metal, dielectric from left to right.
+    Materials,
+    /// Random spheres of three materials at random places.
+    Random {
+        /// How many.
+        count: u32,
+        /// Picks them.
+        seed: u32,
+    },
+}
+
+impl SphereField {
+    /// Number of spheres.
+    pub fn count(&self) -> u32 {
+        match self {
+            Self::Materials => 3,
+            Self::Random { count, .. } => *count,
+        }
+    }
+
+    /// The spheres: place, shape, surface.
+    fn spheres(self) -> Vec<(Transform, Sphere, Material)> {
+        match self {
+            Self::Materials => three_materials(),
+            Self::Random { count, seed } => {
+                (0..count).map(|index| random_sphere(index, count, seed)).collect()
+            }
+        }
+    }
+}
+
+/// An empty world with a camera that looks at the box.
+pub(crate) fn stage() -> World {
+    let mut world = luxel_scene::empty_world();
+    let camera = Camera { focus_distance: EYE.length(), ..Camera::default() };
+    luxel_scene::spawn(&mut world, (Transform::looking_at(EYE, DVec3::ZERO), camera, ActiveCamera));
+    world
+}
+
+/// Makes the spheres of a field the only ones of a world.
+pub(crate) fn fill(world: &mut World, field: SphereField) {
+    let old: Vec<Entity> = world.query_filtered::<Entity, With<Sphere>>().iter(world).collect();
+    for entity in old {
+        world.despawn(entity);
+    }
+    for sphere in field.spheres() {
+        luxel_scene::spawn(world, sphere);
+    }
+}
+
+fn three_materials() -> Vec<(Transform, Sphere, Material)> {
+    let materials = [
+        Material::lambert(Vec3::new(0.75, 0.25, 0.2)),
+        Material::metal(Vec3::new(0.85, 0.75, 0.5), 0.05),
+        Material::dielectric(1.5),
+    ];
+    let place = |index: usize| Transform::at(DVec3::new(1.1 * (index as f64 - 1.0), 0.0, 0.0));
+    materials.into_iter().enumerate().map(|(i, m)| (place(i), Sphere { radius: 0.5 }, m)).collect()
+}
+
+fn random_sphere(index: u32, count: u32, seed: u32) -> (Transform, Sphere, Material) {
+    let [u, v, w, size] = uniform4::<f64>(index, 0, 0, seed);
+    let place = (2.0 * DVec3::new(u, v, w) - DVec3::ONE) * HALF_EDGE;
+    let volume_each = FILLED * (2.0 * HALF_EDGE).powi(3) / f64::from(count.max(1));
+    let radius = (volume_each * 0.75 / std::f64::consts::PI).cbrt();
+    let (small, large) = RADIUS_SPREAD;
+    let sphere = Sphere { radius: radius * (small + (large - small) * size) };
+    (Transform::at(place), sphere, random_material(index, seed))
+}
+
+/// As many of each material.
+fn random_material(index: u32, seed: u32) -> Material {
+    let [red, green, blue, fuzz] = uniform4::<f64>(index, 1, 0, seed).map(|x| x as f32);
+    let color = Vec3::new(red, green, blue);
+    match index % 3 {
+        0 => Material::lambert(0.1 + 0.8 * color),
+        1 => Material::metal(0.5 + 0.45 * color, 0.3 * fuzz),
+        _ => Material::dielectric(1.5),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_field_replaces_the_one_before() {
+        let mut world = stage();
+        for (field, count) in [(SphereField::Random { count: 40, seed: 1 }, 40), (SphereField::Materials, 3)]
+        {
+            fill(&mut world, field);
+            assert_eq!(world.query::<&Sphere>().iter(&world).count(), count);
+            assert_eq!(field.count() as usize, count);
+        }
+    }
+
+    #[test]
+    fn spheres_shrink_with_their_number_and_stay_in_the_box() {
+        let volume = |count| -> f64 {
+            let spheres = SphereField::Random { count, seed: 3 }.spheres();
+            assert!(spheres.iter().all(|(t, ..)| t.translation.abs().max_element() <= HALF_EDGE));
+            spheres.iter().map(|(_, sphere, _)| 4.2 * sphere.radius.powi(3)).sum()
+        };
+        let (few, many) = (volume(500), volume(20_000));
+        assert!((few / many - 1.0).abs() < 0.2 && (many / 8.0 - FILLED).abs() < 0.3 * FILLED, "{few} {many}");
+    }
+}

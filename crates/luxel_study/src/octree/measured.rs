@@ -1,0 +1,98 @@
+//! From frames to a record.
+use luxel_engine::{BackendFacts, Counter, Counters, Frame, SphereFacts};
+
+use super::origin::Origin;
+use super::plan::{Configuration, Group, Plan};
+use super::record::{FORMAT, Run, STUDY};
+use super::stats::{median, quantile, without_outliers};
+
+/// What was measured of a configuration.
+#[derive(Default)]
+pub(crate) struct Measured {
+    pub(crate) structure: Option<SphereFacts>,
+    pub(crate) build_secs: f64,
+    /// Seconds of the last frame that did not count.
+    pub(crate) warm_up_secs: Option<f64>,
+    pub(crate) frame_ms: Vec<f64>,
+    pub(crate) counters: Counters,
+    pub(crate) wrong_pixels: Option<f64>,
+    pub(crate) look: Option<Look>,
+}
+
+/// One frame as it looks.
+pub(crate) struct Look {
+    /// PNG in base64.
+    pub(crate) png: String,
+    pub(crate) noise: f64,
+}
+
+impl Measured {
+    pub(crate) fn add(&mut self, frame: Frame) {
+        self.frame_ms.push(1e3 * frame.secs);
+        self.counters.add(&frame.counters);
+    }
+}
+
+/// The record of a configuration.
+pub(crate) fn record(
+    plan: &Plan,
+    origin: &Origin,
+    facts: &BackendFacts,
+    group: &Group,
+    configuration: &Configuration,
+    measured: Measured,
+) -> Run {
+    let Configuration { accel, asked_depth, min_spheres, size: (width, height), quality } = *configuration;
+    let kept = without_outliers(&measured.frame_ms);
+    let frame_ms = median(&kept).unwrap_or_default().max(f64::MIN_POSITIVE);
+    let counted = measured.frame_ms.len().max(1) as f64;
+    let of = |counter: Counter| measured.counters[counter] as f64;
+    let all_rays = measured.counters.rays() as f64;
+    let rays = all_rays / counted;
+    let structure = measured.structure.unwrap_or_default();
+    let (png, noise) = measured.look.map_or((None, None), |look| (Some(look.png), Some(look.noise)));
+    Run {
+        study: STUDY.to_owned(),
+        format: FORMAT,
+        sweep: group.sweep,
+        quick: plan.quick,
+        date: origin.date.clone(),
+        version: origin.version.clone(),
+        commit: origin.commit.clone(),
+        machine: origin.machine.clone(),
+        backend: facts.backend.name().to_owned(),
+        device: facts.device.clone(),
+        driver: facts.driver.trim().to_owned(),
+        structure: accel.name().to_owned(),
+        spheres: group.field.count(),
+        asked_depth,
+        max_depth: configuration.cloud().max_depth,
+        min_spheres,
+        width,
+        height,
+        quality: quality.row().name.to_owned(),
+        spp: quality.row().spp,
+        bounces: quality.row().max_depth,
+        build_secs: measured.build_secs,
+        bytes: structure.bytes,
+        nodes: structure.nodes,
+        depth: structure.depth,
+        cut_off: structure.cut_off,
+        frames: kept.len() as u32,
+        outliers: (measured.frame_ms.len() - kept.len()) as u32,
+        frame_ms,
+        frame_ms_p25: quantile(&kept, 0.25).unwrap_or_default(),
+        frame_ms_p75: quantile(&kept, 0.75).unwrap_or_default(),
+        fps: 1e3 / frame_ms,
+        rays,
+        rays_per_sec: rays * 1e3 / frame_ms,
+        nodes_per_ray: of(Counter::SphereNodes) / all_rays.max(1.0),
+        tests_per_ray: of(Counter::SphereTests) / all_rays.max(1.0),
+        lambert_bounces: of(Counter::LambertBounces) / counted,
+        metal_bounces: of(Counter::MetalBounces) / counted,
+        dielectric_bounces: of(Counter::DielectricBounces) / counted,
+        wrong_pixels: measured.wrong_pixels,
+        noise,
+        picture_png: png,
+    }
+}

@@ -1,0 +1,89 @@
+//! The table at the top of the page: the machine, and what came out.
+use super::figure::{Figure, Table};
+use super::record::Sweep;
+use super::select::{NAIVE, OURS, REPORTS, Runs, backend_name};
+use super::text::{count, list, percent, short, times};
+use super::verdict::{Answer, crossover_text};
+
+/// What is known in a few lines.
+pub(crate) fn summary(runs: &Runs<'_>, figures: &[Figure]) -> Table {
+    let mut rows = Vec::new();
+    let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
+    row("Machine", list(runs.values(|run| run.machine.as_str())));
+    row("Luxel", list(runs.values(|run| format!("{}, commit {}", run.version, run.commit))));
+    row("Date", list(runs.values(|run| run.date.as_str())));
+    row("Runs", format!("{}, {} frames", runs.iter().count(), frames(runs)));
+    for backend in runs.backends() {
+        let on = runs.on(backend);
+        row(backend_name(backend), list(on.values(|run| device(&run.device, &run.driver))));
+    }
+    let counts = runs.of(Sweep::Counts);
+    for backend in counts.backends() {
+        for (name, value) in findings(&counts.on(backend)) {
+            row(&format!("{} on the {}", name, backend_name(backend)), value);
+        }
+    }
+    row("Claims", tally(figures));
+    Table { head: Vec::new(), rows }
+}
+
+fn frames(runs: &Runs<'_>) -> String {
+    count(runs.iter().map(|run| u64::from(run.frames)).sum())
+}
+
+fn device(device: &str, driver: &str) -> String {
+    if driver.is_empty() { device.to_owned() } else { format!("{device}, driver {driver}") }
+}
+
+/// Crossover, advantage, price of the heuristic and the fastest structure of a backend.
+fn findings(on: &Runs<'_>) -> Vec<(&'static str, String)> {
+    let mut found = Vec::new();
+    let small = on.filter(|run| run.spheres <= 2000);
+    for (name, structure) in [
+        ("Crossover: our octree is faster than naive", OURS),
+        ("Crossover: the report's octree is faster than naive", REPORTS),
+    ] {
+        found.push((name, crossover_text(&small.ratios(structure, NAIVE))));
+    }
+    let advantage = small.ratios(OURS, NAIVE);
+    if let Some((spheres, ratio)) = advantage.last() {
+        found.push(("Our octree against naive", format!("{} at {spheres} spheres", times(*ratio))));
+    }
+    let wrong = on.iter().filter_map(|run| Some((run.wrong_pixels?, run.spheres)));
+    if let Some((most, spheres)) = wrong.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        let against = on.ratios(REPORTS, OURS).into_iter().find(|(count, _)| *count == spheres);
+        let speed =
+            against.map_or_else(String::new, |(_, ratio)| format!(", at {} the speed of ours", times(ratio)));
+        found.push((
+            "Wrong pixels of the report's heuristic",
+            format!("up to {} ({spheres} spheres){speed}", percent(most)),
+        ));
+    }
+    if let Some(largest) = on.counts().last() {
+        let at = on.at(*largest);
+        if let Some(fastest) =
+            at.filter(|run| run.structure != REPORTS).iter().min_by(|a, b| a.frame_ms.total_cmp(&b.frame_ms))
+        {
+            found.push((
+                "Fastest exact structure",
+                format!(
+                    "{} at {} spheres: {} ms per frame, {} rays per second",
+                    fastest.structure,
+                    count(u64::from(*largest)),
+                    short(fastest.frame_ms),
+                    short(fastest.rays_per_sec)
+                ),
+            ));
+        }
+    }
+    found
+}
+
+/// How many claims hold.
+fn tally(figures: &[Figure]) -> String {
+    let of = |answer: Answer| {
+        let count = figures.iter().filter(|figure| figure.verdict.answer == answer).count();
+        (count > 0).then(|| format!("{count} {}", answer.name()))
+    };
+    list([Answer::Holds, Answer::Partly, Answer::Fails, Answer::NotMeasured].into_iter().filter_map(of))
+}
