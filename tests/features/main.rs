@@ -1,8 +1,13 @@
 //! Only the effects a scene calls for (design.md §7), for every row of `FEATURES`: a scene without the row links
 //! nothing of it, runs no node of it, counts zero on both backends, and its picture is the one that the code with
 //! all features makes: bit for bit on the CPU, path by path on the GPU.
+//!
+//! And a structure over the spheres is no effect: under every exact one the picture is the same.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
+#[path = "../support/asset.rs"]
+mod asset;
 mod scene;
+mod structures;
 #[path = "../support/traced.rs"]
 mod traced;
 
@@ -63,10 +68,11 @@ fn a_scene_with_everything_does_the_work_of_every_row() {
 fn a_scene_without_a_row_links_nothing_of_it() {
     let library = ShaderLibrary::embedded();
     for row in FEATURES {
-        let features = request(Some(row.feature)).features;
+        let request = request(Some(row.feature));
+        let (features, accel) = (request.features, request.scene.sphere_accel);
         assert_eq!(features, FeatureSet::ALL.with(row.feature, false), "{}: the scene", row.name);
         for kernel in KERNELS.iter().filter(|kernel| kernel.feature.is_none_or(|f| features.has(f))) {
-            let linked = library.link(&kernel.kernel, &conditions(features)).unwrap();
+            let linked = library.link(&kernel.kernel, &conditions(features, accel)).unwrap();
             let left = |symbol: &&&str| linked.functions.iter().any(|f| f.ends_with(&format!("::{symbol}")));
             assert_eq!(row.symbols.iter().find(left), None, "{} in {}", row.name, kernel.kernel.entry);
             let bound = |name: &&&str| linked.binding(name).is_some();

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use luxel_flat::Feature;
 use luxel_scene::{
     Assets, Camera, Environment, Material, MeshAsset, MeshInstance, MeshSource, RenderSettings, Sphere,
-    Surface, Transform, VolumeAsset, VolumeSource, VoxelVolume,
+    SphereAccel, SphereCloud, Surface, Transform, VolumeAsset, VolumeSource, VoxelVolume,
 };
 
 const SIZE: [u32; 2] = [192, 108];
@@ -25,6 +25,8 @@ pub(crate) fn without(feature: Option<Feature>) -> World {
         roulette_depth: 2,
         ..RenderSettings::default()
     });
+    // A structure with nodes, which four spheres would not get by themselves.
+    world.insert_resource(SphereCloud { accel: SphereAccel::Bvh, ..SphereCloud::default() });
     // A focus distance that is no power of two: a pinhole must not depend on it.
     let camera = Camera { vertical_fov: 0.7, lens_radius: 0.05, focus_distance: 6.3 };
     luxel_scene::spawn(&mut world, (camera, Transform::looking_at(DVec3::new(0.3, 0.6, 7.0), DVec3::ZERO)));

@@ -104,7 +104,7 @@ fn s03_grazing_a_planet() {
     for radius in [1e5_f32, 6.4e6] {
         let center = Vec3::new(0.0, -radius, 0.0);
         let ray = |random: &mut Random| {
-            let (sin, cos) = random.between(0.0, 6.28).sin_cos();
+            let (sin, cos) = random.between(0.0, std::f32::consts::TAU).sin_cos();
             Ray::new(Vec3::new(0.0, 1.7, 0.0), Vec3::new(cos, random.between(-0.02, -0.01), sin))
         };
         let rays: Vec<_> = (0..4000).map(|_| ray(&mut random)).collect();

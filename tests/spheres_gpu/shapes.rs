@@ -189,7 +189,7 @@ fn x03_dust_on_a_table_in_a_landscape() {
         let target = &all[[0, 1, 2 + random.below(498) as usize][i % 3]];
         let point = Vec3::from(target.center) + target.radius * random.direction();
         let from = Vec3::new(random.between(-3.0, 3.0), random.between(2.1, 5.0), random.between(-3.0, 3.0));
-        let from = if i % 2 == 0 { from } else { point + (from - Vec3::new(0.0, 2.0, 0.0)) * 1e-3 };
+        let from = if i.is_multiple_of(2) { from } else { point + (from - Vec3::new(0.0, 2.0, 0.0)) * 1e-3 };
         Ray::new(from, point - from)
     };
     let rays: Vec<_> = (0..10_000).map(|i| ray(i, &mut random)).collect();

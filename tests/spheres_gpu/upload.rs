@@ -60,7 +60,7 @@ fn structures_come_and_go_within_one_world() {
         let kept = film(&mut tracer, &request);
         assert!(kept == film(&mut fresh(&gpu), &request), "{accel:?} with {count} spheres, step {revision}");
         let hits = kept.aovs.iter().flatten().filter(|aov| aov.instance > 0).count();
-        assert!(hits > 50, "{accel:?}: {hits} pixels see a sphere");
+        assert!(hits > 10, "{accel:?}: {hits} pixels see a sphere");
     }
 }
 

@@ -286,7 +286,7 @@ impl SphereStructure {
         self.len() == 0
     }
 
-    /// Union of the spheres' boxes: a function of the content alone. Empty without spheres.
+    /// Union of the spheres' boxes as of the last `finish`: a function of the content alone. Empty without spheres.
     pub fn bounds(&self) -> Aabb<f32> {
         match &self.inner {
             Inner::Naive(naive) => naive.bounds,

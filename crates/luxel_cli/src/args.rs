@@ -59,6 +59,11 @@ pub(crate) enum Command {
     /// Prints RMSE, relMSE, PSNR, SSIM and FLIP of two PNG or two EXR pictures of one size. A limit that is exceeded,
     /// or whose metric does not exist for the pair, makes the exit code 1.
     Compare(CompareArgs),
+    /// Measure, and make a page of what comes out
+    ///
+    /// A study measures one thing on this machine and leaves a record per run, a table and a page that opens without
+    /// a network.
+    Study(StudyArgs),
     /// Say what this machine offers and what a render would use
     ///
     /// Prints the graphics adapters, the backend that auto takes and why, and what the best adapter's driver does to
@@ -230,6 +235,65 @@ pub(crate) struct CompareArgs {
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Options of `luxel study`.
+#[derive(Args)]
+#[command(after_help = after_help!("  luxel study octree --quick --out out\n  luxel study octree --help"))]
+pub(crate) struct StudyArgs {
+    #[command(subcommand)]
+    pub(crate) study: Study,
+}
+
+/// The studies.
+#[derive(Subcommand)]
+pub(crate) enum Study {
+    /// Naive, octrees and BVH over spheres: the assessment of seed document 1, made again
+    ///
+    /// Writes runs.jsonl (a line per run), runs.csv and octree.html to DIR. Each configuration is measured in up to 50
+    /// frames within its time; the whole takes about an hour, with --quick less than two minutes on two cores.
+    /// A runs.jsonl of an earlier study in DIR becomes runs.previous.jsonl; a file of that name that is no octree
+    /// study is an error. Ctrl-C stops and writes the page with what there is; a second one ends the program at once,
+    /// and what was measured stays in runs.jsonl.part.
+    Octree(OctreeArgs),
+}
+
+/// Options of `luxel study octree`.
+#[derive(Args)]
+#[command(after_help = after_help!("  \
+  luxel study octree --quick
+  luxel study octree --backend cpu --out out
+  luxel study octree --from out/runs.jsonl --out again"))]
+pub(crate) struct OctreeArgs {
+    /// Smaller pictures, fewer frames and steps, the same figures
+    #[arg(long)]
+    pub(crate) quick: bool,
+
+    /// Folder to write to; made if it is missing
+    #[arg(long, value_name = "DIR", default_value = "octree-study")]
+    pub(crate) out: PathBuf,
+
+    /// Where to trace; a software GPU driver counts as a GPU
+    #[arg(long, default_value = "both", value_parser = values::named(vec![
+        ("cpu", StudyBackends::Cpu), ("gpu", StudyBackends::Gpu), ("both", StudyBackends::Both),
+    ]))]
+    pub(crate) backend: StudyBackends,
+
+    /// Seconds of frames per configuration (at least a frame per turn is measured, however short the time)
+    #[arg(long, value_name = "SECS", value_parser = values::positive, allow_negative_numbers = true)]
+    pub(crate) seconds: Option<f64>,
+
+    /// Measure nothing: make table and page again from this runs.jsonl
+    #[arg(long, value_name = "RUNS", conflicts_with_all = ["quick", "backend", "seconds"])]
+    pub(crate) from: Option<PathBuf>,
+}
+
+/// Backends that a study measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StudyBackends {
+    Cpu,
+    Gpu,
+    Both,
 }
 
 /// Options of `luxel doctor`.

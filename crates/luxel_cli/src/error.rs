@@ -12,7 +12,7 @@ pub(crate) enum CliError {
     /// Loading, rendering or describing a scene failed.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// Two pictures cannot be compared.
+    /// Two pictures cannot be compared, or a study cannot be made.
     #[error(transparent)]
     Study(#[from] StudyError),
     /// Two options that exclude each other.
@@ -42,6 +42,10 @@ impl CliError {
     fn exit_code(&self) -> ExitCode {
         match self {
             Self::Engine(error) => error.exit_code(),
+            Self::Study(StudyError::Engine(error)) => error.exit_code(),
+            Self::Study(
+                StudyError::Write { .. } | StudyError::Json(_) | StudyError::Csv(_) | StudyError::Page(_),
+            ) => ExitCode::Machine,
             Self::Study(_) | Self::Usage(_) | Self::NoShowcase(_) => ExitCode::BadInput,
             Self::Stdout(_) | Self::Json(_) | Self::Interrupt(_) => ExitCode::Machine,
         }

@@ -18,6 +18,7 @@ mod progress;
 mod render;
 mod reply;
 mod showcase;
+mod study;
 mod targets;
 mod values;
 
@@ -53,6 +54,7 @@ fn answer(cli: Cli, source: &Path) -> Result<luxel_engine::ExitCode, CliError> {
         Some(Command::Info(args)) => info::info(&args),
         Some(Command::Graph(args)) => graph::graph(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
+        Some(Command::Study(args)) => study::study(&args, source),
         Some(Command::Doctor(args)) => doctor::doctor(&args),
     }
 }

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use luxel_engine::RenderProgress;
+use luxel_study::octree::StudyProgress;
 
 /// Steps of the bar.
 const STEPS: u64 = 1000;
@@ -37,6 +38,12 @@ impl ProgressLine {
         self.bar.set_message(message(progress));
     }
 
+    /// Shows how far a study is.
+    pub(crate) fn show_study(&self, progress: &StudyProgress) {
+        self.bar.set_position((progress.fraction * STEPS as f64) as u64);
+        self.bar.set_message(study_message(progress));
+    }
+
     /// Prints a line of its own on stderr, above the bar if there is one.
     #[expect(clippy::print_stderr, reason = "notices belong on stderr")]
     pub(crate) fn note(&self, notice: &str) {
@@ -57,15 +64,21 @@ fn message(progress: &RenderProgress) -> String {
         message += &format!(", error {:.2} %", 100.0 * error);
     }
     message += &format!(", {}", clock(progress.secs));
-    if let Some(to_go) = secs_to_go(progress) {
-        message += &format!(", {} to go", clock(to_go));
-    }
-    message
+    message + &to_go(progress.fraction, progress.secs)
 }
 
-/// Seconds until the end if work goes on as it did; `None` before anything is done.
-fn secs_to_go(progress: &RenderProgress) -> Option<f64> {
-    (progress.fraction > 0.0).then(|| progress.secs * (1.0 - progress.fraction) / progress.fraction)
+/// What is measured, time so far and to go.
+fn study_message(progress: &StudyProgress) -> String {
+    format!("{}, {}{}", progress.what, clock(progress.secs), to_go(progress.fraction, progress.secs))
+}
+
+/// Time until the end if work goes on as it did; nothing before anything is done.
+fn to_go(fraction: f64, secs: f64) -> String {
+    if fraction > 0.0 {
+        format!(", {} to go", clock(secs * (1.0 - fraction) / fraction))
+    } else {
+        String::new()
+    }
 }
 
 /// Seconds as minutes and seconds, hours in front if there are any.
@@ -89,6 +102,8 @@ mod tests {
         assert_eq!(message(&at(0.0, 1.0, None)), "16 spp, 0:01");
         assert_eq!(message(&at(0.5, 90.0, Some(0.0213))), "16 spp, error 2.13 %, 1:30, 1:30 to go");
         assert_eq!(clock(3_725.4), "1:02:05");
+        let study = StudyProgress { fraction: 0.5, what: "CPU, 10 spheres, bvh".to_owned(), secs: 30.0 };
+        assert_eq!(study_message(&study), "CPU, 10 spheres, bvh, 0:30, 0:30 to go");
     }
 
     #[test]

@@ -23,7 +23,7 @@ pub struct Walk {
 
 /// Visits the leaves that a ray enters. `visit_leaf` gets a leaf's primitives (first and count) and returns up to
 /// where the ray is still searched: its `t_max` or the best hit's parameter.
-#[inline]
+#[inline(always)]
 pub fn walk<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>, visit_leaf: impl FnMut(u32, u32) -> R) -> Walk {
     Walker::<R, _, STACK_SIZE>::new(nodes, ray, visit_leaf).run()
 }
@@ -40,13 +40,13 @@ struct Walker<'a, R: Real, F, const SIZE: usize> {
 }
 
 impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, SIZE> {
-    #[inline]
+    #[inline(always)]
     fn new(nodes: &'a [BvhNode], ray: &SlabRay<R>, visit_leaf: F) -> Self {
         let walk = Walk { node_count: 0, is_sound: true };
         Self { nodes, ray: *ray, visit_leaf, walk, stack: [(0, R::ZERO); SIZE], waiting: 0 }
     }
 
-    #[inline]
+    #[inline(always)]
     fn run(mut self) -> Walk {
         let pair_ray = PairRay::new(&self.ray);
         let mut next = self.nodes.first().map(|root| root.leaf);
@@ -63,7 +63,7 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
     }
 
     /// Tests the children of an inner node: the one to go on with, if any.
-    #[inline]
+    #[inline(always)]
     fn enter(&mut self, pair_ray: &PairRay<R>, first_child: u32) -> Option<u32> {
         let first = first_child as usize;
         let pair = self.nodes.get(first..first + 2);
@@ -90,7 +90,7 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
     }
 
     /// Lets a node wait; if there is no room, walks its subtree at once.
-    #[inline]
+    #[inline(always)]
     fn push(&mut self, node: usize, enter: R) {
         match self.stack.get_mut(self.waiting) {
             Some(place) => {
@@ -102,7 +102,7 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
     }
 
     /// The waiting node that was pushed last, of those that the ray enters before the best hit.
-    #[inline]
+    #[inline(always)]
     fn pop(&mut self) -> Option<u32> {
         while self.waiting > 0 {
             self.waiting -= 1;
@@ -114,7 +114,7 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
         None
     }
 
-    #[inline]
+    #[inline(always)]
     fn visit(&mut self, leaf: u32) {
         let (first, count) = BvhNode { leaf, ..BvhNode::default() }.primitives();
         self.ray.t_max = (self.visit_leaf)(first, count);
@@ -142,5 +142,62 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luxel_accel::{BvhOptions, build_bvh};
+    use luxel_geom::{Aabb, Ray};
+    use luxel_testkit::{meshes, rays};
+
+    use super::*;
+
+    /// The leaf entries that a walk visits, in order of their numbers.
+    fn visited<const SIZE: usize>(nodes: &[BvhNode], ray: &Ray<f32>) -> (Vec<u32>, Walk) {
+        let mut entries = Vec::new();
+        let slab_ray = SlabRay::new(ray);
+        let visit_leaf = |first, count| {
+            entries.extend(first..first + count);
+            slab_ray.t_max
+        };
+        let walk = Walker::<f32, _, SIZE>::new(nodes, &slab_ray, visit_leaf).run();
+        entries.sort_unstable();
+        (entries, walk)
+    }
+
+    fn tree() -> Vec<BvhNode> {
+        let boxes: Vec<Aabb<f32>> = meshes::soup(1, 1000, 0.3).boxes();
+        build_bvh(&boxes, &BvhOptions::default()).map(|bvh| bvh.nodes).unwrap_or_default()
+    }
+
+    #[test]
+    fn a_full_stack_loses_nothing() {
+        let nodes = tree();
+        let mut entries = 0;
+        for ray in rays::random(1, 2000, 2.0) {
+            let (roomy, walk) = visited::<64>(&nodes, &ray);
+            assert!(walk.is_sound);
+            assert_eq!(visited::<0>(&nodes, &ray).0, roomy);
+            assert_eq!(visited::<2>(&nodes, &ray).0, roomy);
+            entries += roomy.len();
+        }
+        assert!(entries > 10_000, "{entries}");
+    }
+
+    #[test]
+    fn damaged_nodes_end_the_walk() {
+        let nodes = tree();
+        for (damage, content) in [(0, 0), (1, 0), (5, 1), (0, 1 << 27), (2, nodes.len() as u32 - 1)] {
+            let mut damaged = nodes.clone();
+            damaged[damage] = BvhNode { leaf: content, skip: damage as u32, ..damaged[damage] };
+            for ray in rays::random(2, 200, 2.0) {
+                visited::<1>(&damaged, &ray);
+                visited::<64>(&damaged, &ray);
+            }
+        }
+        let mut circle = nodes.clone();
+        circle[0].leaf = 0;
+        assert!(rays::random(3, 50, 1.0).iter().any(|ray| !visited::<64>(&circle, ray).1.is_sound));
     }
 }

@@ -13,10 +13,11 @@ use luxel_geom::{Ray, SlabRay, rng};
 
 use crate::{Exclusion, camera, cloud, instance};
 
-/// Cost of a visited node in nanoseconds of one core (AMD EPYC, measured over clouds of 10 to 100,000 spheres).
-pub const NODE_COST: f64 = 5.0;
-/// Cost of a tested sphere, likewise.
-pub const TEST_COST: f64 = 6.0;
+/// Cost of a visited node in nanoseconds of one core (AMD EPYC; clouds of 10 to 10,000 spheres gave 7 to 10, larger
+/// ones more as they leave the caches).
+pub const NODE_COST: f64 = 8.0;
+/// Cost of a tested sphere, likewise: 7.5 to 9 where all are tested, one after the other.
+pub const TEST_COST: f64 = 8.0;
 
 /// Rays within the cloud's box.
 const CHORDS: u32 = 512;

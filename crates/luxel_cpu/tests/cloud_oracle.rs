@@ -2,7 +2,7 @@
 //!
 //! | case of robustness.md | test |
 //! |---|---|
-//! | O01 | `o01_half_a_million_rays_among_small_and_large`, `o01_every_setting`; the other half, and the heuristic's errors: `cloud_seed.rs` |
+//! | O01 | `o01_400_000_rays_among_small_and_large`, `o01_every_setting`; 600,000 more, and the heuristic's errors: `cloud_seed.rs` |
 //! | O02 | `o02_inside_one_that_spans_everything` |
 //! | O03, B03 | `o03_b03_nested`, `o03_identical`; the trees' sizes: `luxel_accel/tests/octree.rs`, `cells.rs` |
 //! | O04 | `o04_centres_on_dividing_planes`, `o04_tangent_to_cells` |
@@ -31,9 +31,9 @@ use luxel_geom::{Exclude, Ray};
 use luxel_testkit::{Random, rays, spheres};
 
 #[test]
-fn o01_half_a_million_rays_among_small_and_large() {
-    // Half of them start inside the octree. Ten scenes, so that no lucky seed decides.
-    for seed in 0..10 {
+fn o01_400_000_rays_among_small_and_large() {
+    // Half of them start inside the octree. Eight scenes, so that no lucky seed decides.
+    for seed in 0..8 {
         let mut all = rays::random(2 * seed, 25_000, 0.5);
         all.extend(rays::random(2 * seed + 1, 25_000, 2.0));
         let spheres = spheres::small_and_large(100 + 2 * seed);
@@ -131,7 +131,7 @@ fn o05_lattice_rays_through_cell_corners() {
     }
     let through = |zeros| rays::through_lattice(8, 0.125, zeros);
     for scene in &scenes[1..] {
-        for (a, b) in through(false).zip(through(true)).step_by(3) {
+        for (a, b) in through(false).zip(through(true)).step_by(7) {
             assert_eq!(bits(&trace(scene, &a)), bits(&trace(scene, &b)), "{a:?}");
         }
     }

@@ -1,9 +1,10 @@
 //! O01 for the report's heuristic: how often it shows a sphere that is not the closest. The exact structures are
 //! asked about the same rays: none of the answers may be wrong.
 //!
-//! robustness.md [M6] measured 3 % with 3 large spheres among small ones and 30 % with 10, in another octree and with
-//! other rays; the share depends on both.
-#![allow(clippy::unwrap_used)]
+//! robustness.md [M6] measured 3 % of wrong answers with 3 large spheres among small ones and 30 % with 10. Here, over
+//! five scenes each, it is 9 % and 21 % of the rays, 17 % and 33 % of the hits; single scenes with 3 large ones begin
+//! at 3 % of the rays.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that reports what it measured")]
 mod common;
 
 use common::clouds::{EXACT, SEED, cloud_scene, naive_bits, wrong_rays};
@@ -46,7 +47,7 @@ fn wrong_share(spheres: &[SphereRecord], all: &[Ray<f32>], options: SphereOption
 fn o01_the_heuristic_is_wrong_for_a_share_of_the_rays() {
     let shares = [3, 10].map(|large| {
         let share = |seed: u32| {
-            let all = half_from_inside(1000 * large + 10 * seed, 50_000);
+            let all = half_from_inside(1000 * large + 10 * seed, 60_000);
             wrong_share(&small_and_large(100 * large + 2 * seed, large), &all, SEED)
         };
         let shares: Vec<_> = (0..5).map(share).collect();

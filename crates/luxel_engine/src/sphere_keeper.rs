@@ -27,8 +27,8 @@ pub(crate) struct SphereKeeper {
     because: String,
     /// `None` for a structure that moved spheres cannot spoil.
     upkeep: Option<Upkeep>,
-    /// Builds, counted since ever, when `upkeep` began.
-    builds: u64,
+    /// [`renewals`] when `upkeep` began.
+    renewals: u64,
 }
 
 impl SphereKeeper {
@@ -86,7 +86,7 @@ impl SphereKeeper {
         world: &mut World,
     ) -> Result<Arc<FlatScene>, BakeError> {
         let counters = *world.resource::<BakeCounters>();
-        if counters.sphere_rebuilds != self.builds {
+        if renewals(&counters) != self.renewals {
             self.begin_upkeep(&scene, world);
             return Ok(scene);
         }
@@ -104,10 +104,10 @@ impl SphereKeeper {
         Ok(scene)
     }
 
-    /// Starts to watch a structure that was just built.
+    /// Starts to watch a structure that is as good as new.
     fn begin_upkeep(&mut self, scene: &FlatScene, world: &World) {
         let counters = world.resource::<BakeCounters>();
-        self.builds = counters.sphere_rebuilds;
+        self.renewals = renewals(counters);
         let spoils = matches!(scene.sphere_accel, SphereAccel::Octree | SphereAccel::Bvh)
             && scene.features.has(Feature::Spheres);
         self.upkeep = spoils.then(|| Upkeep::new(cloud_cost::measure(scene).cost_per_ray, touched(counters)));
@@ -139,6 +139,13 @@ fn bake_with(accel: SphereAccel, baker: &mut Baker, world: &mut World) -> Result
 
 fn live_spheres(scene: &FlatScene) -> u64 {
     scene.spheres.as_slice().iter().filter(|sphere| sphere.radius > 0.0).count() as u64
+}
+
+/// What has left a structure as good as new, counted since ever: builds, and spheres that came or went. After those a BVH
+/// was built anew, and the loose octree has the shape that it would have been built in; only moves spoil one. (The
+/// cost of a ray changes with the number of spheres, and that is no detour.)
+fn renewals(counters: &BakeCounters) -> u64 {
+    counters.sphere_rebuilds + counters.sphere_inserts + counters.sphere_removes
 }
 
 /// Spheres that edits have touched since ever.

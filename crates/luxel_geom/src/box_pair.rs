@@ -33,7 +33,7 @@ pub struct PairHit<R: Real> {
 
 impl<R: Real> PairRay<R> {
     /// Spreads a ray over the lanes.
-    #[inline]
+    #[inline(always)]
     pub fn new(ray: &SlabRay<R>) -> Self {
         let spread = |v: R::Vec3, axis| R::Lanes::splat(v.axis(axis));
         let signs = R::Lanes::from_f32(SIGNS);
@@ -45,7 +45,7 @@ impl<R: Real> PairRay<R> {
     }
 
     /// Tests two boxes; `lo` and `hi` are the corners of the first and of the second.
-    #[inline]
+    #[inline(always)]
     pub fn test(&self, lo: [[f32; 3]; 2], hi: [[f32; 3]; 2], t_max: R) -> PairHit<R> {
         let slab = |axis: usize| {
             let planes = R::Lanes::from_f32([lo[0][axis], lo[1][axis], hi[0][axis], hi[1][axis]]);

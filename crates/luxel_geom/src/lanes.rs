@@ -1,6 +1,9 @@
 //! Four numbers at once: glam's vectors of four as the lanes of one instruction.
 //!
 //! Each lane computes what the scalar code computes with the same operations in the same order, bit for bit.
+//!
+//! Inlined by force, here and where lanes are used: passed between functions, lanes go through memory, which made a
+//! walk through a tree twice as slow.
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -31,35 +34,35 @@ pub trait Lanes<R: Real>:
 macro_rules! impl_lanes {
     ($real:ty, $vec4:ty) => {
         impl Lanes<$real> for $vec4 {
-            #[inline]
+            #[inline(always)]
             fn from_f32(lanes: [f32; 4]) -> Self {
                 Self::from_array(lanes.map(<$real>::from))
             }
-            #[inline]
+            #[inline(always)]
             fn from_array(lanes: [$real; 4]) -> Self {
                 <$vec4>::from_array(lanes)
             }
-            #[inline]
+            #[inline(always)]
             fn splat(value: $real) -> Self {
                 <$vec4>::splat(value)
             }
-            #[inline]
+            #[inline(always)]
             fn min(self, other: Self) -> Self {
                 <$vec4>::min(self, other)
             }
-            #[inline]
+            #[inline(always)]
             fn max(self, other: Self) -> Self {
                 <$vec4>::max(self, other)
             }
-            #[inline]
+            #[inline(always)]
             fn at_most(self, other: Self) -> u32 {
                 self.cmple(other).bitmask()
             }
-            #[inline]
+            #[inline(always)]
             fn halves_swapped(self) -> Self {
                 glam::Vec4Swizzles::zwxy(self)
             }
-            #[inline]
+            #[inline(always)]
             fn first_two(self) -> [$real; 2] {
                 [self.x, self.y]
             }

@@ -65,7 +65,7 @@ pub struct QuadRay<R: Real> {
 
 impl<R: Real> QuadRay<R> {
     /// Spreads a ray over the lanes.
-    #[inline]
+    #[inline(always)]
     pub fn new(ray: &SlabRay<R>) -> Self {
         Self {
             origin: [0, 1, 2].map(|axis| R::Lanes::splat(ray.origin.axis(axis))),
@@ -74,8 +74,8 @@ impl<R: Real> QuadRay<R> {
         }
     }
 
-    /// Bit i is set if [`intersect`] with sphere i would look for roots. Centres by axis.
-    #[inline]
+    /// Bit i is set if [`intersect`] with sphere i would look for roots. A sphere is its centre and its radius.
+    #[inline(always)]
     pub fn can_meet(&self, centers: [[f32; 4]; 3], radii: [f32; 4]) -> u32 {
         let [ox, oy, oz] = self.origin;
         let [dx, dy, dz] = self.direction;

@@ -1,20 +1,25 @@
-//! The surface area heuristic over 16 bins per axis.
-use glam::{DVec3, Vec3};
-use luxel_geom::Aabb;
+//! The surface area heuristic over bins along each axis.
+use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
 use super::split::Primitive;
 
-/// Bins per axis.
+/// Most bins per axis.
 const BINS: usize = 16;
+/// Bins per axis for a set so small that going over the bins costs more than going over the set.
+const FEW_BINS: usize = 8;
+/// The largest such set.
+const FEW_COUNT: usize = 64;
 /// Larger sets are binned in parallel, in pieces of this size.
 const CHUNK: usize = 16_384;
 
 /// Maps centres to bins.
 pub(super) struct Grid {
-    lo: Vec3,
+    lo: Vec3A,
     /// Bins per unit of length; not positive and finite in an axis that cannot be binned.
-    scale: Vec3,
+    scale: Vec3A,
+    /// Bins per axis.
+    bins: usize,
 }
 
 /// The best place to cut a set of primitives.
@@ -28,24 +33,28 @@ pub(super) struct Cut {
     pub(super) tests: f64,
 }
 
-/// Number and box of some primitives; the box means nothing while the number is 0.
+/// Number and box of some primitives.
 #[derive(Clone, Copy)]
 struct Bin {
+    lo: Vec3A,
+    hi: Vec3A,
     count: u32,
-    bounds: Aabb<f32>,
 }
 
 type Bins = [[Bin; BINS]; 3];
 
 impl Grid {
-    /// A grid over a box of centres.
-    pub(super) fn new(centers: Aabb<f32>) -> Self {
-        Self { lo: centers.lo, scale: BINS as f32 / centers.extent() }
+    /// A grid over the box of the centres of `count` primitives.
+    pub(super) fn new(lo: Vec3A, hi: Vec3A, count: usize) -> Self {
+        let bins = if count > FEW_COUNT { BINS } else { FEW_BINS };
+        Self { lo, scale: bins as f32 / (hi - lo), bins }
     }
 
-    /// The bin of a centre.
-    pub(super) fn bin(&self, axis: usize, center: Vec3) -> usize {
-        (((center[axis] - self.lo[axis]) * self.scale[axis]) as usize).min(BINS - 1)
+    /// The bin of a centre along each axis.
+    #[inline]
+    pub(super) fn bins(&self, center: Vec3A) -> [usize; 3] {
+        let places = (center - self.lo) * self.scale;
+        places.to_array().map(|place| (place as u32 as usize).min(self.bins - 1))
     }
 
     fn can_bin(&self, axis: usize) -> bool {
@@ -54,24 +63,22 @@ impl Grid {
 }
 
 impl Bin {
-    const EMPTY: Self = Self { count: 0, bounds: Aabb { lo: Vec3::ZERO, hi: Vec3::ZERO } };
+    /// The neutral element of [`Bin::with`].
+    const EMPTY: Self = Self { lo: Vec3A::MAX, hi: Vec3A::MIN, count: 0 };
 
+    #[inline]
     fn with(&self, other: &Self) -> Self {
-        let bounds = match (self.count, other.count) {
-            (0, _) => other.bounds,
-            (_, 0) => self.bounds,
-            _ => self.bounds.union(&other.bounds),
-        };
-        Self { count: self.count + other.count, bounds }
+        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi), count: self.count + other.count }
     }
 
-    fn add(&mut self, bounds: &Aabb<f32>) {
-        *self = self.with(&Self { count: 1, bounds: *bounds });
+    #[inline]
+    fn add(&mut self, primitive: &Primitive) {
+        *self = self.with(&Self { lo: primitive.lo, hi: primitive.hi, count: 1 });
     }
 
     /// Half the surface, in double precision: single would overflow.
     fn area(&self) -> f64 {
-        let e = (self.bounds.hi.as_dvec3() - self.bounds.lo.as_dvec3()).max(DVec3::ZERO);
+        let e = (self.hi.as_dvec3() - self.lo.as_dvec3()).max(DVec3::ZERO);
         e.x * e.y + e.y * e.z + e.z * e.x
     }
 
@@ -87,7 +94,7 @@ pub(super) fn best_cut(primitives: &[Primitive], grid: &Grid) -> Option<Cut> {
     let area = bins[0].iter().fold(Bin::EMPTY, |all, bin| all.with(bin)).area();
     let mut best: Option<Cut> = None;
     for axis in (0..3).filter(|&axis| grid.can_bin(axis)) {
-        for (bin, cost) in costs(&bins[axis]) {
+        for (bin, cost) in costs(&bins[axis][..grid.bins]) {
             let tests = cost / area;
             if tests.is_finite() && best.is_none_or(|b| tests < b.tests) {
                 best = Some(Cut { axis, bin, tests });
@@ -98,15 +105,15 @@ pub(super) fn best_cut(primitives: &[Primitive], grid: &Grid) -> Option<Cut> {
 }
 
 /// Cost of a cut before each bin, where both sides hold something.
-fn costs(bins: &[Bin; BINS]) -> impl Iterator<Item = (usize, f64)> {
+fn costs(bins: &[Bin]) -> impl Iterator<Item = (usize, f64)> {
     let mut above = [Bin::EMPTY; BINS];
     let mut sum = Bin::EMPTY;
-    for i in (1..BINS).rev() {
+    for i in (1..bins.len()).rev() {
         sum = sum.with(&bins[i]);
         above[i] = sum;
     }
     let mut below = Bin::EMPTY;
-    (1..BINS).filter_map(move |i| {
+    (1..bins.len()).filter_map(move |i| {
         below = below.with(&bins[i - 1]);
         (below.count > 0 && above[i].count > 0).then(|| (i, below.cost() + above[i].cost()))
     })
@@ -118,8 +125,8 @@ fn fill(primitives: &[Primitive], grid: &Grid) -> Bins {
     let fill_chunk = |chunk: &[Primitive]| {
         let mut bins = empty();
         for primitive in chunk {
-            for (axis, bins) in bins.iter_mut().enumerate() {
-                bins[grid.bin(axis, primitive.center)].add(&primitive.bounds);
+            for (bins, bin) in bins.iter_mut().zip(grid.bins(primitive.center())) {
+                bins[bin].add(primitive);
             }
         }
         bins

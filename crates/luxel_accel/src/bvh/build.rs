@@ -51,6 +51,8 @@ fn grow(primitives: &mut [Primitive], first: u32, depth: u32, options: &BvhOptio
 /// A leaf, its primitives in the order of the input.
 fn leaf(primitives: &mut [Primitive], first: u32) -> Subtree {
     primitives.sort_unstable_by_key(|p| p.index);
-    let bounds = primitives.iter().fold(primitives[0].bounds, |b, p| b.union(&p.bounds));
+    let one = (primitives[0].lo, primitives[0].hi);
+    let (lo, hi) = primitives[1..].iter().fold(one, |(lo, hi), p| (lo.min(p.lo), hi.max(p.hi)));
+    let bounds = Aabb { lo: lo.into(), hi: hi.into() };
     Subtree { bounds, content: Content::Leaf(first, primitives.len() as u32) }
 }

@@ -1,6 +1,6 @@
 //! Where a set of primitives is cut in two.
-use glam::Vec3;
-use luxel_geom::{Aabb, Vector};
+use glam::Vec3A;
+use luxel_geom::Aabb;
 
 use super::bins::{self, Grid};
 use super::{BvhOptions, MAX_BVH_DEPTH};
@@ -11,18 +11,24 @@ const MAX_SAH_DEPTH: u32 = 60;
 /// A primitive on its way into a leaf.
 #[derive(Clone, Copy)]
 pub(super) struct Primitive {
-    /// Its box.
-    pub(super) bounds: Aabb<f32>,
-    /// Centre of the box.
-    pub(super) center: Vec3,
+    /// Lower corner of its box.
+    pub(super) lo: Vec3A,
+    /// Upper corner of its box.
+    pub(super) hi: Vec3A,
     /// Position in the input.
     pub(super) index: u32,
 }
 
 impl Primitive {
-    /// The centre is formed so that it does not overflow.
+    /// The primitive at a position of the input.
     pub(super) fn new(index: usize, bounds: Aabb<f32>) -> Self {
-        Self { bounds, center: bounds.lo * 0.5 + bounds.hi * 0.5, index: index as u32 }
+        Self { lo: bounds.lo.into(), hi: bounds.hi.into(), index: index as u32 }
+    }
+
+    /// Centre of the box, formed so that it does not overflow.
+    #[inline]
+    pub(super) fn center(&self) -> Vec3A {
+        self.lo * 0.5 + self.hi * 0.5
     }
 }
 
@@ -30,15 +36,17 @@ impl Primitive {
 pub(super) fn split(primitives: &mut [Primitive], depth: u32, options: &BvhOptions) -> Option<usize> {
     let count = primitives.len();
     let may_be_leaf = count <= options.max_leaf_size as usize;
-    if count <= 1 {
+    // No cut of so few would pay.
+    if count <= 1 || (may_be_leaf && count as f32 <= options.traversal_cost) {
         return None;
     }
     if depth < MAX_SAH_DEPTH && depth + levels_of_medians(count) < MAX_BVH_DEPTH {
-        let grid = Grid::new(centroid_bounds(primitives));
+        let (lo, hi) = centroid_bounds(primitives);
+        let grid = Grid::new(lo, hi, count);
         if let Some(cut) = bins::best_cut(primitives, &grid) {
             let is_worth_it = f64::from(options.traversal_cost) + cut.tests < count as f64;
             let take = is_worth_it || !may_be_leaf;
-            return take.then(|| partition(primitives, |p| grid.bin(cut.axis, p.center) < cut.bin));
+            return take.then(|| partition(primitives, |p| grid.bins(p.center())[cut.axis] < cut.bin));
         }
     }
     (!may_be_leaf).then(|| split_at_median(primitives))
@@ -53,11 +61,9 @@ fn levels_of_medians(count: usize) -> u32 {
 }
 
 /// The box of the primitives' centres.
-fn centroid_bounds(primitives: &[Primitive]) -> Aabb<f32> {
-    primitives.iter().fold(Aabb { lo: primitives[0].center, hi: primitives[0].center }, |b, p| Aabb {
-        lo: Vector::min(b.lo, p.center),
-        hi: Vector::max(b.hi, p.center),
-    })
+fn centroid_bounds(primitives: &[Primitive]) -> (Vec3A, Vec3A) {
+    let first = primitives[0].center();
+    primitives.iter().fold((first, first), |(lo, hi), p| (lo.min(p.center()), hi.max(p.center())))
 }
 
 /// Moves the primitives for which `is_first` holds to the front and returns their number.
@@ -74,7 +80,8 @@ fn partition(primitives: &mut [Primitive], is_first: impl Fn(&Primitive) -> bool
 
 /// Halves the primitives in the order of their centres along the widest axis, equal centres by index.
 fn split_at_median(primitives: &mut [Primitive]) -> usize {
-    let extent = centroid_bounds(primitives).extent();
+    let (lo, hi) = centroid_bounds(primitives);
+    let extent = hi - lo;
     let axis = if extent.x >= extent.y && extent.x >= extent.z {
         0
     } else if extent.y >= extent.z {
@@ -84,7 +91,7 @@ fn split_at_median(primitives: &mut [Primitive]) -> usize {
     };
     let middle = primitives.len() / 2;
     primitives.select_nth_unstable_by(middle, |a, b| {
-        a.center[axis].total_cmp(&b.center[axis]).then(a.index.cmp(&b.index))
+        a.center()[axis].total_cmp(&b.center()[axis]).then(a.index.cmp(&b.index))
     });
     middle
 }
@@ -94,7 +101,7 @@ mod tests {
     use super::*;
 
     fn points(centers: impl IntoIterator<Item = f32>) -> Vec<Primitive> {
-        let point = |(i, x)| Primitive::new(i, Aabb { lo: Vec3::splat(x), hi: Vec3::splat(x) });
+        let point = |(i, x)| Primitive::new(i, Aabb { lo: glam::Vec3::splat(x), hi: glam::Vec3::splat(x) });
         centers.into_iter().enumerate().map(point).collect()
     }
 
@@ -110,7 +117,7 @@ mod tests {
     fn numbers_that_are_not_finite_do_not_stop_the_cut() {
         for x in [f32::NAN, f32::INFINITY, f32::MAX] {
             let mut primitives = points((0..40).map(|i| if i % 3 == 0 { x } else { i as f32 }));
-            primitives[5].center = Vec3::splat(-f32::MAX);
+            (primitives[5].lo, primitives[5].hi) = (Vec3A::MIN, Vec3A::MIN);
             let middle = split(&mut primitives, 0, &BvhOptions::default()).unwrap();
             assert!(middle > 0 && middle < 40);
         }

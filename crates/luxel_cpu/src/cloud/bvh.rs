@@ -34,7 +34,7 @@ pub(super) fn intersect<R: Real>(
 
 /// Tests consecutive spheres. Where four can be read, most are ruled out together; the last few are not read past
 /// the end of the heap.
-#[inline]
+#[inline(always)]
 fn test_leaf<R: Real>(
     spheres: &[LeafSphere],
     first: usize,

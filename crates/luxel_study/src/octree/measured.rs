@@ -33,6 +33,11 @@ impl Measured {
     }
 }
 
+/// Seven significant digits: no measurement has more, and such numbers come back the same from any file.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.6e}").parse().unwrap_or(value)
+}
+
 /// The record of a configuration.
 pub(crate) fn record(
     plan: &Plan,
@@ -73,26 +78,41 @@ pub(crate) fn record(
         quality: quality.row().name.to_owned(),
         spp: quality.row().spp,
         bounces: quality.row().max_depth,
-        build_secs: measured.build_secs,
+        build_secs: rounded(measured.build_secs),
         bytes: structure.bytes,
         nodes: structure.nodes,
         depth: structure.depth,
         cut_off: structure.cut_off,
         frames: kept.len() as u32,
         outliers: (measured.frame_ms.len() - kept.len()) as u32,
-        frame_ms,
-        frame_ms_p25: quantile(&kept, 0.25).unwrap_or_default(),
-        frame_ms_p75: quantile(&kept, 0.75).unwrap_or_default(),
-        fps: 1e3 / frame_ms,
-        rays,
-        rays_per_sec: rays * 1e3 / frame_ms,
-        nodes_per_ray: of(Counter::SphereNodes) / all_rays.max(1.0),
-        tests_per_ray: of(Counter::SphereTests) / all_rays.max(1.0),
-        lambert_bounces: of(Counter::LambertBounces) / counted,
-        metal_bounces: of(Counter::MetalBounces) / counted,
-        dielectric_bounces: of(Counter::DielectricBounces) / counted,
-        wrong_pixels: measured.wrong_pixels,
-        noise,
+        frame_ms: rounded(frame_ms),
+        frame_ms_p25: rounded(quantile(&kept, 0.25).unwrap_or_default()),
+        frame_ms_p75: rounded(quantile(&kept, 0.75).unwrap_or_default()),
+        fps: rounded(1e3 / frame_ms),
+        rays: rounded(rays),
+        rays_per_sec: rounded(rays * 1e3 / frame_ms),
+        nodes_per_ray: rounded(of(Counter::SphereNodes) / all_rays.max(1.0)),
+        tests_per_ray: rounded(of(Counter::SphereTests) / all_rays.max(1.0)),
+        lambert_bounces: rounded(of(Counter::LambertBounces) / counted),
+        metal_bounces: rounded(of(Counter::MetalBounces) / counted),
+        dielectric_bounces: rounded(of(Counter::DielectricBounces) / counted),
+        wrong_pixels: measured.wrong_pixels.map(rounded),
+        noise: noise.map(rounded),
         picture_png: png,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounded_numbers_are_read_as_they_were_written() {
+        for i in 1..2000_u32 {
+            let value = rounded((f64::from(i) * 0.7).exp2().recip() * 1e9 / f64::from(i));
+            let text = serde_json::to_string(&value).unwrap();
+            assert_eq!(serde_json::from_str::<f64>(&text).unwrap(), value);
+        }
+        assert_eq!((rounded(0.0), rounded(123_456_789.0)), (0.0, 123_456_800.0));
     }
 }

@@ -106,9 +106,9 @@ const QUICK: Extent = Extent {
     counts: &COUNTS,
     large_counts: &[10_000, 100_000],
     grid_counts: &[10, 50, 250, 1000],
-    grid_heights: &[36, 54, 72],
+    grid_heights: &[24, 36, 48],
     depths: &[0, 1, 2, 3, 4, 5, 7, 10],
-    picture_height: 180,
+    picture_height: 150,
     cpu_height: 72,
     gpu_height: 36,
     depth_height: 48,
@@ -121,8 +121,8 @@ const QUICK: Extent = Extent {
 /// A few seconds in all: for tests.
 const TINY: Extent = Extent {
     quick: true,
-    counts: &[10, 50, 100],
-    large_counts: &[500],
+    counts: &[10, 50, 500, 1000],
+    large_counts: &[3000],
     grid_counts: &[10, 50],
     grid_heights: &[6, 12],
     depths: &[0, 1, 2],

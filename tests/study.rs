@@ -1,0 +1,170 @@
+//! The octree study: the smallest plan that has every figure, measured, and made again from its records.
+#![allow(clippy::unwrap_used)]
+
+mod front_door;
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use front_door::{Outcome, luxel, names, run};
+use luxel_engine::BackendChoice;
+use luxel_study::octree::{self, Origin, Plan, Run, Studied, StudyEvent, Sweep};
+
+/// Figures of the report, then those that it lacks.
+const REPORTS: u32 = 21;
+const ALL: u32 = 28;
+
+fn study(out: &Path, backends: &[BackendChoice]) -> Studied {
+    let origin = Origin::now(Some("test".to_owned()));
+    octree::run(&Plan::tiny(backends), &origin, out, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+/// Insists on one line of error with that exit code and gives the line.
+fn refused(outcome: Outcome, code: i32) -> String {
+    assert_eq!(outcome.code, Some(code), "{}", outcome.stderr);
+    assert!(
+        outcome.stderr.lines().count() == 1 && outcome.stderr.starts_with("error: "),
+        "{}",
+        outcome.stderr
+    );
+    outcome.stderr
+}
+
+/// What stands between two marks, after the first of each.
+fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
+    let start = text.find(from).unwrap_or_else(|| panic!("no {from}")) + from.len();
+    let length = text[start..].find(to).unwrap_or_else(|| panic!("no {to} after {from}"));
+    &text[start..start + length]
+}
+
+fn check_page(page: &str) {
+    for number in 1..=ALL {
+        let figure = between(page, &format!("<section class=\"figure\" id=\"fig-{number}\""), "</section>");
+        assert!(figure.contains(&format!("Fig. {number}: ")), "{number}");
+        let verdict = figure.rsplit("class=\"verdict ").next().unwrap();
+        let (answer, because) = verdict.split_once("</span>").unwrap();
+        assert!(
+            ["holds", "holds partly", "does not hold"].iter().any(|a| answer.ends_with(&format!(">{a}"))),
+            "{number}: {answer}"
+        );
+        assert!(because.trim_end_matches("</p>").trim().len() > 10, "{number}: {because}");
+        let shown = ["<svg", "<img", "<table class=\"heat\""].iter().any(|what| figure.contains(what));
+        assert!(shown, "figure {number} shows nothing");
+    }
+    let report_ends = page.find(&format!("id=\"fig-{}\"", REPORTS + 1)).unwrap();
+    assert!(page.find("Further figures").unwrap() < report_ends);
+    let without_names = page.replace("http://www.w3.org/2000/svg", "");
+    for resource in ["http:", "https:", "<link", "<script", "@import"] {
+        assert!(!without_names.contains(resource), "{resource}");
+    }
+    assert_eq!(page.matches("data:image/png;base64,").count(), 5);
+}
+
+fn check_files(folder: &Path, studied: &Studied) {
+    assert_eq!(names(folder), ["octree.html", "runs.csv", "runs.jsonl"]);
+    let list = octree::read_runs(&folder.join("runs.jsonl")).unwrap();
+    let table = std::fs::read_to_string(folder.join("runs.csv")).unwrap();
+    // No text of a run has a line break.
+    assert_eq!((list.len(), table.lines().count()), (studied.runs.len(), studied.runs.len() + 1));
+    assert!(list == studied.runs, "what was read is not what was measured");
+    check_page(&std::fs::read_to_string(folder.join("octree.html")).unwrap());
+}
+
+#[test]
+fn every_figure_has_its_verdict_and_the_page_can_be_made_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, again) = (folder.path().join("new/out"), folder.path().join("again"));
+    let studied = study(&out, &[BackendChoice::Cpu]);
+    assert!(studied.is_complete);
+    check_files(&out, &studied);
+
+    let from = ["study", "octree", "--from", "new/out/runs.jsonl", "--out", "again"];
+    run(luxel(folder.path()).args(from)).succeeded();
+    assert_eq!(names(&again), ["octree.html", "runs.csv"]);
+    for name in ["octree.html", "runs.csv"] {
+        assert_eq!(
+            std::fs::read(out.join(name)).unwrap(),
+            std::fs::read(again.join(name)).unwrap(),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn runs_say_what_was_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let runs = study(folder.path(), &[BackendChoice::Cpu]).runs;
+    let of = |sweep: Sweep, structure: &str| -> Vec<Run> {
+        runs.iter().filter(|run| run.sweep == sweep && run.structure == structure).cloned().collect()
+    };
+    for naive in of(Sweep::Counts, "naive") {
+        // Rays that miss the box of all spheres test none.
+        let tests = naive.tests_per_ray / f64::from(naive.spheres);
+        assert!(tests > 0.3 && tests <= 1.0, "{naive:?}");
+    }
+    for tree in of(Sweep::Counts, "octree").into_iter().chain(of(Sweep::Counts, "bvh")) {
+        assert!(tree.tests_per_ray < f64::from(tree.spheres) && tree.bytes > 32 * u64::from(tree.spheres));
+        assert!(tree.nodes > 0 && tree.build_secs > 0.0 && tree.rays_per_sec > 0.0);
+    }
+    assert!(of(Sweep::Counts, "octree-seed").iter().all(|run| run.wrong_pixels.is_some()));
+    assert!(runs.iter().all(|run| run.frames > 0 && run.max_depth <= 20 && run.depth <= 64));
+}
+
+#[test]
+fn both_backends_build_the_same_and_trace_alike() {
+    if luxel_gpu::testing::gpu_or_fail().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let runs = study(folder.path(), &[BackendChoice::Cpu, BackendChoice::Gpu]).runs;
+    let of = |backend: &str| -> Vec<&Run> {
+        runs.iter().filter(|run| run.sweep == Sweep::Counts && run.backend == backend).collect()
+    };
+    let (cpu, gpu) = (of("cpu"), of("gpu"));
+    assert_eq!(cpu.len(), gpu.len());
+    for (cpu, gpu) in cpu.iter().zip(gpu) {
+        assert_eq!((&cpu.structure, cpu.spheres, cpu.nodes), (&gpu.structure, gpu.spheres, gpu.nodes));
+        // The pictures have different sizes and random numbers.
+        let (cpu_rays, gpu_rays) =
+            (cpu.rays / f64::from(cpu.width * cpu.height), gpu.rays / f64::from(gpu.width * gpu.height));
+        assert!((cpu_rays / gpu_rays - 1.0).abs() < 0.3, "{cpu_rays} {gpu_rays}");
+    }
+}
+
+#[test]
+fn a_stopped_study_keeps_what_it_has() {
+    let folder = tempfile::tempdir().unwrap();
+    let origin = Origin::now(None);
+    let stop_at = |turns: usize, out: &Path| {
+        let mut seen = 0;
+        let mut observer = |event: &StudyEvent| {
+            seen += usize::from(matches!(event, StudyEvent::Progress(_)));
+            if seen > turns { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        octree::run(&Plan::tiny(&[BackendChoice::Cpu]), &origin, out, &mut observer).unwrap()
+    };
+    let nothing = stop_at(0, folder.path());
+    assert!(!nothing.is_complete && nothing.files.is_empty() && names(folder.path()).is_empty());
+    let some = stop_at(4, folder.path());
+    assert!(!some.is_complete && !some.runs.is_empty());
+    let page = std::fs::read_to_string(folder.path().join("octree.html")).unwrap();
+    assert!(page.contains("not measured") && page.contains("id=\"fig-28\""));
+}
+
+#[test]
+fn bad_input_is_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = folder.path().join("runs.jsonl");
+    std::fs::write(&list, "{\"study\":\"octree\"\n").unwrap();
+    let from = ["study", "octree", "--from", "runs.jsonl", "--out", "out"];
+    let error = refused(run(luxel(folder.path()).args(from)), 2);
+    assert!(error.contains("runs.jsonl, line 1:"), "{error}");
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    let error =
+        refused(run(luxel(folder.path()).args(["study", "octree", "--quick", "--out", "file/out"])), 3);
+    assert!(error.contains("file/out"), "{error}");
+    // A list of runs of something else stays as it is.
+    let error = refused(run(luxel(folder.path()).args(["study", "octree", "--quick", "--out", "."])), 2);
+    assert!(error.contains("runs.jsonl, line 1:"), "{error}");
+    assert_eq!(names(folder.path()), ["file", "runs.jsonl"]);
+}
