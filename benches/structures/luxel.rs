@@ -1,8 +1,12 @@
 //! Luxel's own structures, as the CPU tracer goes through them.
 use glam::{UVec3, Vec3};
-use luxel_accel::{BvhOptions, OctreeOptions, RootCell, SphereOctree, Svo, SvoVoxel, build_mesh, build_svo};
+use luxel_accel::{
+    BvhOptions, RootCell, SphereOptions, SphereStructure, Svo, SvoVoxel, build_mesh, build_svo,
+};
 use luxel_cpu::{Exclusion, cloud, mesh, volume};
-use luxel_flat::{Counters, FlatScene, Heap, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SphereRecord};
+use luxel_flat::{
+    Counters, FlatScene, Heap, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SphereAccel, SphereRecord,
+};
 use luxel_geom::{Aabb, Ray, SlabRay};
 
 use crate::primitive::ClosestHit;
@@ -49,22 +53,31 @@ impl ClosestHit for LuxelBvh {
     }
 }
 
-/// Spheres and their loose octree.
-pub(crate) struct LuxelOctree(Placed);
+/// The sphere cloud with one of its structures.
+pub(crate) struct LuxelSpheres(Placed);
 
-impl LuxelOctree {
-    pub(crate) fn build(spheres: &[SphereRecord]) -> Self {
-        let root = RootCell { center: Vec3::ZERO, half_extent: 1.0 };
-        let in_slots: Vec<(u32, SphereRecord)> = (0..).zip(spheres.iter().copied()).collect();
-        let octree = SphereOctree::build(root, OctreeOptions::default(), &in_slots, 1).unwrap();
-        let node_count = octree.nodes().len() as u32;
-        let instance = Instance { kind: KIND_SPHERES, node_count, ..Instance::default() };
+impl LuxelSpheres {
+    pub(crate) fn build(accel: SphereAccel, spheres: &[SphereRecord]) -> Self {
+        Self::over(&structure(accel, spheres))
+    }
+
+    /// The cloud as a structure has it now.
+    pub(crate) fn over(structure: &SphereStructure) -> Self {
+        let instance = Instance {
+            kind: KIND_SPHERES,
+            node_count: structure.node_count(),
+            primitive_count: structure.spheres().len() as u32,
+            ..Instance::default()
+        };
         let scene = FlatScene {
-            octree_nodes: octree.nodes().clone(),
-            spheres: octree.spheres().clone(),
+            sphere_accel: structure.options().accel,
+            octree_nodes: structure.octree_nodes().clone(),
+            sphere_nodes: structure.sphere_nodes().clone(),
+            leaf_spheres: structure.leaf_spheres().clone(),
+            spheres: structure.spheres().clone(),
             ..FlatScene::default()
         };
-        Self(Placed { scene, instance, bounds: octree.bounds() })
+        Self(Placed { scene, instance, bounds: structure.bounds() })
     }
 
     pub(crate) fn bounds(&self) -> Aabb<f32> {
@@ -72,7 +85,14 @@ impl LuxelOctree {
     }
 }
 
-impl ClosestHit for LuxelOctree {
+/// A structure that can be edited, in a root cell that leaves the spheres room to move.
+pub(crate) fn structure(accel: SphereAccel, spheres: &[SphereRecord]) -> SphereStructure {
+    let root = RootCell { center: Vec3::ZERO, half_extent: 2.0 };
+    let in_slots: Vec<(u32, SphereRecord)> = (0..).zip(spheres.iter().copied()).collect();
+    SphereStructure::build(SphereOptions { accel, ..SphereOptions::default() }, root, &in_slots, 1).unwrap()
+}
+
+impl ClosestHit for LuxelSpheres {
     fn closest(&self, ray: &Ray<f32>) -> Option<f32> {
         let Placed { scene, instance, .. } = &self.0;
         let mut counters = Counters::default();

@@ -7,6 +7,7 @@
 mod bvh_crate;
 mod inputs;
 mod luxel;
+mod moving;
 mod obvhs_crate;
 mod primitive;
 
@@ -14,12 +15,12 @@ use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput};
-use luxel_flat::SphereRecord;
+use luxel_flat::{SphereAccel, SphereRecord};
 use luxel_geom::Ray;
 
 use bvh_crate::BvhCrate;
 use inputs::Model;
-use luxel::{LuxelBvh, LuxelOctree, LuxelSvo};
+use luxel::{LuxelBvh, LuxelSpheres, LuxelSvo};
 use obvhs_crate::{ObvhsBinary, ObvhsWide};
 use primitive::{ClosestHit, Primitive, Vertices};
 
@@ -33,9 +34,14 @@ fn main() {
         bench_mesh(&mut criterion, &model);
     }
     bench_spheres(&mut criterion, &inputs::sphere_cloud());
+    moving::bench(&mut criterion, &inputs::sphere_cloud());
     bench_voxels(&mut criterion);
     criterion.final_summary();
 }
+
+/// Luxel's structures over spheres, the one that is compared with the crates first.
+const SPHERE_STRUCTURES: [(&str, SphereAccel); 2] =
+    [("luxel", SphereAccel::Bvh), ("luxel octree", SphereAccel::Octree)];
 
 fn bench_mesh(criterion: &mut Criterion, model: &Model) {
     let triangles: Vec<Vertices> = model.triangles();
@@ -58,13 +64,20 @@ fn bench_mesh(criterion: &mut Criterion, model: &Model) {
 
 fn bench_spheres(criterion: &mut Criterion, spheres: &[SphereRecord]) {
     let mut build = group(criterion, "sphere build", spheres.len());
-    build.bench_function("luxel", |b| b.iter(|| LuxelOctree::build(spheres)));
+    for (name, accel) in SPHERE_STRUCTURES {
+        build.bench_function(name, |b| b.iter(|| LuxelSpheres::build(accel, spheres)));
+    }
     bench_other_builds(&mut build, spheres);
     build.finish();
 
-    let luxel = LuxelOctree::build(spheres);
-    for (kind, rays) in inputs::rays(luxel.bounds()) {
-        bench_hits(criterion, &format!("sphere closest hit, {kind}"), &rays, &luxel, spheres);
+    let [bvh, octree] = SPHERE_STRUCTURES.map(|(_, accel)| LuxelSpheres::build(accel, spheres));
+    for (kind, rays) in inputs::rays(bvh.bounds()) {
+        let name = format!("sphere closest hit, {kind}");
+        bench_hits(criterion, &name, &rays, &bvh, spheres);
+        let mut hits = group(criterion, &name, rays.len());
+        assert_same_hits(&name, SPHERE_STRUCTURES[1].0, &bvh, &octree, &rays);
+        bench_closest(&mut hits, SPHERE_STRUCTURES[1].0, &octree, &rays);
+        hits.finish();
     }
 }
 

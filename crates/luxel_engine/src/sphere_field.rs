@@ -7,7 +7,7 @@
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
 use luxel_geom::rng::uniform4;
-use luxel_scene::{ActiveCamera, Camera, Material, Sphere, Transform};
+use luxel_scene::{ActiveCamera, Camera, Environment, Material, Sphere, Transform};
 
 /// Half the edge of the box of centres, metres.
 const HALF_EDGE: f64 = 1.0;
@@ -15,8 +15,19 @@ const HALF_EDGE: f64 = 1.0;
 const FILLED: f64 = 0.03;
 /// Radii lie between these multiples of the one that fills the box.
 const RADIUS_SPREAD: (f64, f64) = (0.6, 1.3);
+/// Large spheres among small ones.
+const LARGE_SPHERES: u32 = 10;
+/// Their radii, metres.
+const LARGE_RADII: (f64, f64) = (0.3, 0.5);
 /// Where the camera stands; it looks at the origin and sees the whole box and sky around it.
 const EYE: DVec3 = DVec3::new(0.9, 0.7, 3.7);
+
+/// Dark enough for bright spheres to stand out.
+const SKY: Environment = Environment::Gradient {
+    zenith: Vec3::new(0.12, 0.25, 0.62),
+    horizon: Vec3::new(0.42, 0.52, 0.68),
+    ground: Vec3::new(0.07, 0.06, 0.05),
+};
 
 /// A scene of the octree study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -30,6 +41,13 @@ pub enum SphereField {
         /// Picks them.
         seed: u32,
     },
+    /// The same with ten large spheres among them: what the report's heuristic is worst at.
+    Mixed {
+        /// How many small ones.
+        count: u32,
+        /// Picks them.
+        seed: u32,
+    },
 }
 
 impl SphereField {
@@ -38,6 +56,7 @@ impl SphereField {
         match self {
             Self::Materials => 3,
             Self::Random { count, .. } => *count,
+            Self::Mixed { count, .. } => count + LARGE_SPHERES,
         }
     }
 
@@ -48,6 +67,9 @@ impl SphereField {
             Self::Random { count, seed } => {
                 (0..count).map(|index| random_sphere(index, count, seed)).collect()
             }
+            Self::Mixed { count, seed } => {
+                (0..count + LARGE_SPHERES).map(|index| mixed_sphere(index, count, seed)).collect()
+            }
         }
     }
 }
@@ -56,6 +78,7 @@ impl SphereField {
 pub(crate) fn stage() -> World {
     let mut world = luxel_scene::empty_world();
     let camera = Camera { focus_distance: EYE.length(), ..Camera::default() };
+    world.insert_resource(SKY);
     luxel_scene::spawn(&mut world, (Transform::looking_at(EYE, DVec3::ZERO), camera, ActiveCamera));
     world
 }
@@ -79,6 +102,13 @@ fn three_materials() -> Vec<(Transform, Sphere, Material)> {
     ];
     let place = |index: usize| Transform::at(DVec3::new(1.1 * (index as f64 - 1.0), 0.0, 0.0));
     materials.into_iter().enumerate().map(|(i, m)| (place(i), Sphere { radius: 0.5 }, m)).collect()
+}
+
+fn mixed_sphere(index: u32, count: u32, seed: u32) -> (Transform, Sphere, Material) {
+    let (place, small, material) = random_sphere(index, count, seed);
+    let [size, ..] = uniform4::<f64>(index, 2, 0, seed);
+    let radius = LARGE_RADII.0 + (LARGE_RADII.1 - LARGE_RADII.0) * size;
+    (place, if index < LARGE_SPHERES { Sphere { radius } } else { small }, material)
 }
 
 fn random_sphere(index: u32, count: u32, seed: u32) -> (Transform, Sphere, Material) {
@@ -109,8 +139,11 @@ mod tests {
     #[test]
     fn a_field_replaces_the_one_before() {
         let mut world = stage();
-        for (field, count) in [(SphereField::Random { count: 40, seed: 1 }, 40), (SphereField::Materials, 3)]
-        {
+        for (field, count) in [
+            (SphereField::Random { count: 40, seed: 1 }, 40),
+            (SphereField::Mixed { count: 40, seed: 1 }, 50),
+            (SphereField::Materials, 3),
+        ] {
             fill(&mut world, field);
             assert_eq!(world.query::<&Sphere>().iter(&world).count(), count);
             assert_eq!(field.count() as usize, count);

@@ -2,6 +2,7 @@
 use std::collections::BTreeMap;
 
 use luxel_film::StopRule;
+use luxel_flat::{Counter, Counters};
 use serde::Serialize;
 
 use crate::output::Metadata;
@@ -146,6 +147,40 @@ impl Rendered {
     fn all_notices(&self, engine: &Engine, baked: &[String], spheres: &SphereAccelFacts) -> Vec<String> {
         let load = engine.load_report();
         let all = load.dropped.iter().chain(&load.warnings).chain(baked);
-        all.cloned().chain(spheres.notices()).chain(self.notices.iter().cloned()).collect()
+        let traced = doubts(&self.stats.counters);
+        all.cloned().chain(spheres.notices()).chain(traced).chain(self.notices.iter().cloned()).collect()
+    }
+}
+
+/// What the counters say against the picture.
+fn doubts(counters: &Counters) -> Vec<String> {
+    let (caps, dropped) = (counters[Counter::TraversalCaps], counters[Counter::NonFiniteSamples]);
+    let mut doubts = Vec::new();
+    if caps > 0 {
+        // Software drivers end a thread after 65,535 turns of its loops.
+        doubts.push(format!(
+            "{caps} searches for the closest hit were cut short, so that the picture may be wrong; \
+             --backend cpu, or another --sphere-accel, has no such limit"
+        ));
+    }
+    if dropped > 0 {
+        doubts.push(format!("{dropped} samples were not finite and were left out"));
+    }
+    doubts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_went_wrong_is_told() {
+        let mut counters = Counters::default();
+        counters[Counter::SphereTests] = 7;
+        assert!(doubts(&counters).is_empty());
+        counters[Counter::TraversalCaps] = 3;
+        assert!(doubts(&counters)[0].starts_with("3 searches"));
+        counters[Counter::NonFiniteSamples] = 2;
+        assert!(doubts(&counters)[1].starts_with("2 samples"));
     }
 }

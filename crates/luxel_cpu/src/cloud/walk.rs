@@ -61,7 +61,7 @@ fn next_child(
     (rank..8)
         .map(|rank| rank ^ octant)
         .filter(|child| node.child_mask & (1 << child) != 0)
-        .map(|child| node.first_child.wrapping_add(child))
+        .filter_map(|child| node.first_child.checked_add(child))
         .find(|child| nodes.get(*child as usize).is_some_and(|node| visitor.enters(node)))
 }
 

@@ -121,6 +121,18 @@ impl Chart {
         (least / 1.5, (most * 1.5).max(least * 3.0))
     }
 
+    /// How many values the axis names at most: decades only, unless there are too few of them.
+    fn tick_count(&self) -> usize {
+        let (low, high) = self.range();
+        if !self.is_log {
+            8
+        } else if high / low > 30.0 {
+            5
+        } else {
+            10
+        }
+    }
+
     fn fill<'a, Y>(
         &self,
         chart: &mut ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, Y>>,
@@ -140,6 +152,8 @@ impl Chart {
             .x_desc(self.x)
             .y_desc(self.y)
             .x_labels(2 * self.categories.len() + 1)
+            .y_labels(self.tick_count())
+            .max_light_lines(0)
             .x_label_formatter(&|place| self.category(*place))
             .y_label_formatter(&|value| short(*value))
             .draw()?;

@@ -18,7 +18,7 @@ fn corner(child: u32, distance: f64) -> [f64; 3] {
 pub(crate) fn cube() -> Markup {
     let edges = (0..8_u32).flat_map(|a| [1, 2, 4].map(|bit| (a, a | bit))).filter(|(a, b)| a != b);
     html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 460 330" role="img"
+        svg xmlns="http://www.w3.org/2000/svg" viewBox="0 -70 460 470" role="img"
             aria-label="A cube; an arrow into each corner, coloured by its octant" style="max-width:460px" {
             defs {
                 @for (child, color) in COLORS.iter().enumerate() {

@@ -186,7 +186,8 @@ impl Study<'_, '_> {
             stage.frame()?;
             measured.look = Some(Look { png: png(&stage.picture()?)?, noise: stage.noise()? });
         }
-        if group.sweep == Sweep::Counts && configuration.accel == SphereAccel::OctreeSeed {
+        let is_compared = matches!(group.sweep, Sweep::Counts | Sweep::Mixed);
+        if is_compared && configuration.accel == SphereAccel::OctreeSeed {
             let exact =
                 if group.field.count() <= NAIVE_MOST { SphereAccel::Naive } else { SphereAccel::Octree };
             let right = self.first_hits(stage, &Configuration { accel: exact, ..*configuration })?;

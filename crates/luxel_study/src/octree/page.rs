@@ -93,7 +93,8 @@ fn method(runs: &Runs<'_>) -> Markup {
     html! {
         p {
             "Scene: random spheres in a box, a third each Lambert, metal and dielectric, together always 3 % of the \
-             box, nothing else but the sky. A frame is the whole picture at all its samples. The structures that a \
+             box, nothing else but the sky. Rays that miss the box around all \
+             spheres test none of them, without a structure too. A frame is the whole picture at all its samples. The structures that a \
              figure compares take turns, so that whatever happens to the machine happens to all of them; each turn \
              begins with a frame that does not count. " (fewest) " to " (most) " frames of each configuration were \
              measured, fewer where they are slow. Frames with a z-score above " (MAX_Z) " were left out as outliers ("
@@ -103,7 +104,7 @@ fn method(runs: &Runs<'_>) -> Markup {
             "Rendering time only: building the structure is given on its own (figure 24). Speeds that differ by less \
              than " (short(100.0 * NOISE)) " % count as equal where a best setting or a trend is looked for. The report's \
              octree (octree-seed, octree-base) has a smallest node of 1 as in the report and a depth that grows with \
-             the scene, from 4 at 10 spheres to 9 at a million; ours has its defaults, depth 20 and 8 spheres. Depths \
+             the scene, about a cell per sphere: 1 at 10 spheres, 3 at 1000, 6 at a million; ours has its defaults, depth 20 and 8 spheres. Depths \
              above 20 are held at 20."
         }
         @if cut_off > 0 {

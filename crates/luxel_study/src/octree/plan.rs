@@ -13,8 +13,10 @@ pub(crate) const MAX_DEPTH: u32 = 20;
 const COUNTS: [u32; 7] = [10, 50, 100, 250, 500, 1000, 2000];
 /// Spheres of the scene in which qualities are compared.
 const QUALITY_SPHERES: u32 = 100;
+/// Small spheres of the scene with spheres of very different sizes.
+const MIXED_SPHERES: u32 = 1000;
 /// Spheres of the scene in which depth is set against quality.
-const DEPTH_QUALITY_SPHERES: u32 = 500;
+const DEPTH_QUALITY_SPHERES: u32 = 250;
 /// The sizes of leaves that the report compares, and those that its conclusion asks for.
 const REPORT_LEAVES: [u32; 2] = [0, 1];
 const LARGER_LEAVES: [u32; 4] = [2, 4, 8, 16];
@@ -105,7 +107,7 @@ const QUICK: Extent = Extent {
     quick: true,
     counts: &COUNTS,
     large_counts: &[10_000, 100_000],
-    grid_counts: &[10, 50, 250, 1000],
+    grid_counts: &[10, 50, 250, 500],
     grid_heights: &[24, 36, 48],
     depths: &[0, 1, 2, 3, 4, 5, 7, 10],
     picture_height: 150,
@@ -115,7 +117,7 @@ const QUICK: Extent = Extent {
     gpu_depth: false,
     frames: 12,
     rounds: 3,
-    secs_each: 0.08,
+    secs_each: 0.06,
 };
 
 /// A few seconds in all: for tests.
@@ -178,6 +180,7 @@ impl Plan {
                 groups.extend(extent.pictures(*backend));
             }
             groups.extend(extent.counts(*backend));
+            groups.push(extent.mixed(*backend));
             let is_gpu = *backend == BackendChoice::Gpu;
             if !is_gpu || backends.len() == 1 {
                 groups.extend(extent.grid(*backend));
@@ -239,6 +242,17 @@ impl Extent {
         };
         let large = self.large_counts.iter().map(|count| group(count, true));
         self.counts.iter().map(|count| group(count, false)).chain(large).collect()
+    }
+
+    /// Like the counts, but with spheres of very different sizes.
+    fn mixed(&self, backend: BackendChoice) -> Group {
+        let size = four_by_three(self.height(backend, self.cpu_height));
+        let quality = Quality::Low;
+        let reports = [SphereAccel::OctreeSeed, SphereAccel::OctreeBase];
+        let mut all = vec![ours(size, quality), bvh(size, quality)];
+        all.extend(reports.map(|accel| cells(accel, MIXED_SPHERES, size, quality)));
+        let field = SphereField::Mixed { count: MIXED_SPHERES, seed: SEED };
+        Group { field, ..self.group(Sweep::Mixed, backend, MIXED_SPHERES, all) }
     }
 
     fn grid(&self, backend: BackendChoice) -> Vec<Group> {
@@ -348,9 +362,9 @@ fn cells(accel: SphereAccel, count: u32, size: (u32, u32), quality: Quality) -> 
     Configuration { asked_depth: depth_for(count), min_spheres: 1, ..with_defaults(accel, size, quality) }
 }
 
-/// The depth at which there are some hundred cells to a sphere.
+/// The depth at which there is about a cell to a sphere: the report's best (its figure 19: 2 at 500, 3 at 1000).
 fn depth_for(count: u32) -> u32 {
-    count.max(1).ilog2() / 3 + 3
+    (count.max(1).ilog2() / 3).max(1)
 }
 
 #[cfg(test)]
@@ -368,6 +382,7 @@ mod tests {
                 Sweep::Quality,
                 Sweep::Grid,
                 Sweep::Counts,
+                Sweep::Mixed,
                 Sweep::Depth,
                 Sweep::Fraction,
                 Sweep::DepthQuality,
@@ -396,6 +411,6 @@ mod tests {
         let all = plan.groups.iter().flat_map(|group| &group.configurations);
         let asked: Vec<u32> = all.clone().map(|c| c.asked_depth).collect();
         assert!(asked.contains(&4000) && all.clone().all(|c| c.cloud().max_depth <= MAX_DEPTH));
-        assert_eq!((depth_for(10), depth_for(1000), depth_for(1_000_000)), (4, 6, 9));
+        assert_eq!((depth_for(1), depth_for(500), depth_for(1000), depth_for(1_000_000)), (1, 2, 3, 6));
     }
 }

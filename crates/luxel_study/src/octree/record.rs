@@ -20,6 +20,8 @@ pub enum Sweep {
     Grid,
     /// Every structure over the number of spheres, at low quality.
     Counts,
+    /// A thousand small spheres and ten large ones.
+    Mixed,
     /// Depth × smallest node, over the number of spheres.
     Depth,
     /// Depth as half, all and twice the number of spheres.

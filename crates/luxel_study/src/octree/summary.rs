@@ -56,7 +56,7 @@ fn findings(on: &Runs<'_>) -> Vec<(&'static str, String)> {
             against.map_or_else(String::new, |(_, ratio)| format!(", at {} the speed of ours", times(ratio)));
         found.push((
             "Wrong pixels of the report's heuristic",
-            format!("up to {} ({spheres} spheres){speed}", percent(most)),
+            format!("up to {} ({} spheres){speed}", percent(most), count(u64::from(spheres))),
         ));
     }
     if let Some(largest) = on.counts().last() {
@@ -83,7 +83,7 @@ fn findings(on: &Runs<'_>) -> Vec<(&'static str, String)> {
 fn tally(figures: &[Figure]) -> String {
     let of = |answer: Answer| {
         let count = figures.iter().filter(|figure| figure.verdict.answer == answer).count();
-        (count > 0).then(|| format!("{count} {}", answer.name()))
+        (count > 0).then(|| format!("{}: {count}", answer.name()))
     };
     list([Answer::Holds, Answer::Partly, Answer::Fails, Answer::NotMeasured].into_iter().filter_map(of))
 }

@@ -25,7 +25,7 @@ pub(crate) fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i) % 3 == 0 {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
             text.push(',');
         }
         text.push(digit);
@@ -40,7 +40,7 @@ pub(crate) fn percent(part: f64) -> String {
 
 /// How many times as much.
 pub(crate) fn times(ratio: f64) -> String {
-    format!("{}×", short(ratio))
+    if ratio < 9_995.0 { format!("{}×", short(ratio)) } else { format!("{}×", count(ratio.round() as u64)) }
 }
 
 /// Names or numbers as an enumeration; `none` for an empty one.
@@ -77,7 +77,10 @@ mod tests {
             (count(1_234_567), count(7), count(1000)),
             ("1,234,567".into(), "7".into(), "1,000".into())
         );
-        assert_eq!((percent(0.0312), times(2.5)), ("3.12 %".into(), "2.5×".into()));
+        assert_eq!(
+            (percent(0.0312), times(2.5), times(1e4)),
+            ("3.12 %".into(), "2.5×".into(), "10,000×".into())
+        );
         assert_eq!(
             (list([1, 2, 3]), list([1]), list::<u32>([])),
             ("1, 2 and 3".into(), "1".into(), "none".into())

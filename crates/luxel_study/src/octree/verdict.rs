@@ -3,7 +3,7 @@
 //! A claim is taken apart into cases that can be checked one by one. All cases: it holds; none: it does not; some: it
 //! holds partly. Speeds that differ by less than [`NOISE`] count as equal.
 
-use super::text::{list, times};
+use super::text::{count, list, times};
 
 /// Speeds that differ by less than this part cannot be told apart.
 pub(crate) const NOISE: f64 = 0.05;
@@ -100,7 +100,7 @@ pub(crate) fn spread(values: &[f64]) -> Option<f64> {
 
 /// Ratios at their counts as `1.2× at 10, 3× at 50`.
 pub(crate) fn ratios_text(ratios: &[AtCount]) -> String {
-    list(ratios.iter().map(|(count, ratio)| format!("{} at {count}", times(*ratio))))
+    list(ratios.iter().map(|(spheres, ratio)| format!("{} at {}", times(*ratio), count(u64::from(*spheres)))))
 }
 
 #[cfg(test)]

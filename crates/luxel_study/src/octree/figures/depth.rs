@@ -123,7 +123,7 @@ fn by_fraction(runs: &Runs<'_>) -> Figure {
             spreads.extend(spread(&speeds).map(|spread| (*count, spread)));
         }
         cases.extend(spreads.iter().map(|(_, spread)| *spread < MAJOR));
-        reasons += &format!("{name}: fastest over slowest {}. ", ratios_text(&spreads));
+        reasons += &format!("{name}, fastest against slowest: {}. ", ratios_text(&spreads));
     }
     Figure {
         number: 16,

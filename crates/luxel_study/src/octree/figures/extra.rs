@@ -11,10 +11,13 @@ pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     let counts = runs.of(Sweep::Counts);
     // Structures are the same whichever backend traces them.
     let built = counts.backends().first().map_or_else(|| counts.clone(), |backend| counts.on(backend));
-    vec![wrong_pixels(&counts), memory(&built), build_time(&built)]
+    vec![wrong_pixels(&counts, &runs.of(Sweep::Mixed)), memory(&built), build_time(&built)]
 }
 
-fn wrong_pixels(runs: &Runs<'_>) -> Figure {
+/// The scene in which the heuristic is at its worst.
+const MIXED: &str = "1,000 small and 10 large";
+
+fn wrong_pixels(runs: &Runs<'_>, mixed: &Runs<'_>) -> Figure {
     let counts = runs.counts();
     let (mut wrong, mut gains, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     let (mut cases, mut reasons) = (Vec::new(), Vec::new());
@@ -29,7 +32,20 @@ fn wrong_pixels(runs: &Runs<'_>) -> Figure {
             cases.push(most > 0.0);
             reasons.push(format!("up to {} of the pixels on the {}", percent(most), backend_name(backend)));
         }
-        rows.extend(counts.iter().filter_map(|count| wrong_row(&on.at(*count), backend, *count)));
+        rows.extend(
+            counts
+                .iter()
+                .filter_map(|spheres| wrong_row(&on.at(*spheres), backend, count(u64::from(*spheres)))),
+        );
+        rows.extend(wrong_row(&mixed.on(backend), backend, MIXED.to_owned()));
+        if let Some(wrong) = mixed.on(backend).with(REPORTS).first().and_then(|run| run.wrong_pixels) {
+            cases.push(wrong > 0.0);
+            reasons.push(format!(
+                "{} in the scene of {MIXED} on the {}",
+                percent(wrong),
+                backend_name(backend)
+            ));
+        }
     }
     let chart = |caption: &str, y, series, level| {
         let part = over_counts(caption.to_owned(), Kind::Lines, y, &counts, false, series);
@@ -63,14 +79,14 @@ fn wrong_pixels(runs: &Runs<'_>) -> Figure {
     }
 }
 
-fn wrong_row(runs: &Runs<'_>, backend: &str, spheres: u32) -> Option<Vec<String>> {
+fn wrong_row(runs: &Runs<'_>, backend: &str, spheres: String) -> Option<Vec<String>> {
     let seed = runs.with(REPORTS);
     let seed = seed.first()?;
     let ms = |structure: &str| runs.with(structure).first().map(|run| run.frame_ms);
     let said = |ms: Option<f64>| ms.map_or_else(|| "–".to_owned(), |ms| format!("{} ms", short(ms)));
     Some(vec![
         backend_name(backend).to_owned(),
-        count(u64::from(spheres)),
+        spheres,
         seed.wrong_pixels.map_or_else(|| "–".to_owned(), percent),
         said(Some(seed.frame_ms)),
         said(ms("octree-base")),

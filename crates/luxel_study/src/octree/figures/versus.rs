@@ -38,7 +38,7 @@ fn both_ratios(runs: &Runs<'_>) -> Vec<(String, Vec<AtCount>)> {
 }
 
 fn all_ratios_text(all: &[(String, Vec<AtCount>)]) -> String {
-    all.iter().map(|(name, ratios)| format!("{name}: {} times naive. ", ratios_text(ratios))).collect()
+    all.iter().map(|(name, ratios)| format!("{name} against naive: {}. ", ratios_text(ratios))).collect()
 }
 
 fn by_count(grid: &Runs<'_>) -> Figure {
@@ -165,7 +165,7 @@ fn height_ratios(runs: &Runs<'_>) -> Vec<(&'static str, u32, f64)> {
 fn height_verdict(all: &[(&'static str, u32, f64)], what: &str) -> (Vec<bool>, String) {
     let cases = all.iter().map(|(_, _, ratio)| *ratio > 1.0).collect();
     let text = all.iter().map(|(name, height, ratio)| format!("{} ({name}, {height} px)", times(*ratio)));
-    (cases, format!("{what}: {} times naive. ", list(text)))
+    (cases, format!("{what}, speed against naive: {}. ", list(text)))
 }
 
 fn height_chart(runs: &Runs<'_>, caption: String) -> Part {
