@@ -5,19 +5,26 @@ mod front_door;
 
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::LazyLock;
 
 use front_door::{Outcome, luxel, names, run};
 use luxel_engine::BackendChoice;
 use luxel_study::octree::{self, Origin, Plan, Run, Studied, StudyEvent, Sweep};
+use tempfile::TempDir;
 
 /// Figures of the report, then those that it lacks.
 const REPORTS: u32 = 21;
 const ALL: u32 = 28;
 
-fn study(out: &Path, backends: &[BackendChoice]) -> Studied {
+/// The study that the tests look at, on both backends, or on the CPU where there is no GPU.
+static STUDY: LazyLock<(TempDir, Studied)> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = Plan::tiny(&[BackendChoice::Cpu, BackendChoice::Gpu]);
     let origin = Origin::now(Some("test".to_owned()));
-    octree::run(&Plan::tiny(backends), &origin, out, &mut |_| ControlFlow::Continue(())).unwrap()
-}
+    let out = folder.path().join("new/out");
+    let studied = octree::run(&plan, &origin, &out, &mut |_| ControlFlow::Continue(())).unwrap();
+    (folder, studied)
+});
 
 /// Insists on one line of error with that exit code and gives the line.
 fn refused(outcome: Outcome, code: i32) -> String {
@@ -72,11 +79,10 @@ fn check_files(folder: &Path, studied: &Studied) {
 
 #[test]
 fn every_figure_has_its_verdict_and_the_page_can_be_made_again() {
-    let folder = tempfile::tempdir().unwrap();
+    let (folder, studied) = &*STUDY;
     let (out, again) = (folder.path().join("new/out"), folder.path().join("again"));
-    let studied = study(&out, &[BackendChoice::Cpu]);
     assert!(studied.is_complete);
-    check_files(&out, &studied);
+    check_files(&out, studied);
 
     let from = ["study", "octree", "--from", "new/out/runs.jsonl", "--out", "again"];
     run(luxel(folder.path()).args(from)).succeeded();
@@ -92,8 +98,7 @@ fn every_figure_has_its_verdict_and_the_page_can_be_made_again() {
 
 #[test]
 fn runs_say_what_was_measured() {
-    let folder = tempfile::tempdir().unwrap();
-    let runs = study(folder.path(), &[BackendChoice::Cpu]).runs;
+    let runs = &STUDY.1.runs;
     let of = |sweep: Sweep, structure: &str| -> Vec<Run> {
         runs.iter().filter(|run| run.sweep == sweep && run.structure == structure).cloned().collect()
     };
@@ -106,7 +111,8 @@ fn runs_say_what_was_measured() {
         assert!(tree.tests_per_ray < f64::from(tree.spheres) && tree.bytes > 32 * u64::from(tree.spheres));
         assert!(tree.nodes > 0 && tree.build_secs > 0.0 && tree.rays_per_sec > 0.0);
     }
-    assert!(of(Sweep::Counts, "octree-seed").iter().all(|run| run.wrong_pixels.is_some()));
+    let compared = of(Sweep::Counts, "octree-seed").into_iter().chain(of(Sweep::Mixed, "octree-seed"));
+    assert!(compared.into_iter().all(|run| run.wrong_pixels.is_some()));
     assert!(runs.iter().all(|run| run.frames > 0 && run.max_depth <= 20 && run.depth <= 64));
 }
 
@@ -115,8 +121,7 @@ fn both_backends_build_the_same_and_trace_alike() {
     if luxel_gpu::testing::gpu_or_fail().is_none() {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    let runs = study(folder.path(), &[BackendChoice::Cpu, BackendChoice::Gpu]).runs;
+    let runs = &STUDY.1.runs;
     let of = |backend: &str| -> Vec<&Run> {
         runs.iter().filter(|run| run.sweep == Sweep::Counts && run.backend == backend).collect()
     };

@@ -17,12 +17,14 @@
 //! | S03 | grazing a planet | `accuracy::s03_grazing_a_planet` |
 //! | S04 | tangent rays | `accuracy::s04_tangent_rays` |
 //! | S05 | starts on the surface, inside, at the centre | `accuracy::s05_…` |
+//! | S06 | between two mirrors | `mirrors::s06_between_two_mirrors` |
 //! | S08 | bad radii | `accuracy::s08_bad_radii_are_never_hit` |
 //!
 //! Besides: a structure that is exchanged within one world (`upload`), and a driver that ends long loops (`shapes`).
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod accuracy;
 mod compare;
+mod mirrors;
 mod o01;
 mod scene;
 mod shapes;
