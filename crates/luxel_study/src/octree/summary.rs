@@ -19,7 +19,7 @@ pub(crate) fn summary(runs: &Runs<'_>, figures: &[Figure]) -> Table {
     }
     let counts = runs.of(Sweep::Counts);
     for backend in counts.backends() {
-        for (name, value) in findings(&counts.on(backend)) {
+        for (name, value) in findings(&counts.on(backend), &runs.of(Sweep::Mixed).on(backend)) {
             row(&format!("{} on the {}", name, backend_name(backend)), value);
         }
     }
@@ -36,7 +36,7 @@ fn device(device: &str, driver: &str) -> String {
 }
 
 /// Crossover, advantage, price of the heuristic and the fastest structure of a backend.
-fn findings(on: &Runs<'_>) -> Vec<(&'static str, String)> {
+fn findings(on: &Runs<'_>, mixed: &Runs<'_>) -> Vec<(&'static str, String)> {
     let mut found = Vec::new();
     let small = on.filter(|run| run.spheres <= 2000);
     for (name, structure) in [
@@ -49,14 +49,17 @@ fn findings(on: &Runs<'_>) -> Vec<(&'static str, String)> {
     if let Some((spheres, ratio)) = advantage.last() {
         found.push(("Our octree against naive", format!("{} at {spheres} spheres", times(*ratio))));
     }
-    let wrong = on.iter().filter_map(|run| Some((run.wrong_pixels?, run.spheres)));
-    if let Some((most, spheres)) = wrong.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        let against = on.ratios(REPORTS, OURS).into_iter().find(|(count, _)| *count == spheres);
+    let wrong = on.iter().chain(mixed.iter()).filter_map(|run| Some((run.wrong_pixels?, run)));
+    if let Some((most, run)) = wrong.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        let of = if run.sweep == Sweep::Mixed { mixed } else { on };
+        let ratios = of.ratios(REPORTS, OURS);
+        let against = ratios.into_iter().find(|(count, _)| *count == run.spheres);
         let speed =
             against.map_or_else(String::new, |(_, ratio)| format!(", at {} the speed of ours", times(ratio)));
+        let sizes = if run.sweep == Sweep::Mixed { " of mixed sizes" } else { "" };
         found.push((
             "Wrong pixels of the report's heuristic",
-            format!("up to {} ({} spheres){speed}", percent(most), count(u64::from(spheres))),
+            format!("up to {} ({} spheres{sizes}){speed}", percent(most), count(u64::from(run.spheres))),
         ));
     }
     if let Some(largest) = on.counts().last() {
