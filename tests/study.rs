@@ -113,6 +113,11 @@ fn runs_say_what_was_measured() {
     }
     let compared = of(Sweep::Counts, "octree-seed").into_iter().chain(of(Sweep::Mixed, "octree-seed"));
     assert!(compared.into_iter().all(|run| run.wrong_pixels.is_some()));
+    // Large spheres reach out of the first node that they are found in (O01; robustness.md measured 3 to 30 %).
+    let mixed = of(Sweep::Mixed, "octree-seed");
+    let wrong_rays: Vec<f64> = mixed.iter().filter_map(|run| run.wrong_rays).collect();
+    assert_eq!(wrong_rays.len(), 2);
+    assert!(wrong_rays.iter().all(|share| (0.01..0.5).contains(share)), "{wrong_rays:?}");
     assert!(runs.iter().all(|run| run.frames > 0 && run.max_depth <= 20 && run.depth <= 64));
 }
 

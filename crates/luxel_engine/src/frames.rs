@@ -7,11 +7,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use bevy_ecs::prelude::*;
+use glam::DVec3;
 use luxel_accel::{RootCell, SphereOptions, SphereStructure};
 use luxel_bake::SphereFacts;
+use luxel_cpu::{Exclusion, traverse};
 use luxel_film::tracer::{BackendFacts, TraceRequest};
 use luxel_film::{Film, ImageError, View};
 use luxel_flat::{Counter, Counters, FlatScene, SphereRecord};
+use luxel_geom::Ray;
 use luxel_scene::{RenderSettings, SphereAccel, SphereCloud};
 
 use crate::output::Picture;
@@ -178,6 +181,17 @@ impl FrameStage {
     pub fn first_hits(&mut self) -> Result<Vec<u32>, EngineError> {
         let hits = self.film()?.first_hits().unwrap_or_default();
         Ok(hits.iter().map(|hit| if hit.instance == 0 { 0 } else { hit.primitive + 1 }).collect())
+    }
+
+    /// What each of a fixed set of rays, half of them from among the spheres, meets first: stable id of the sphere,
+    /// plus one; 0 for nothing. Traced on the CPU, whatever the stage's backend.
+    pub fn nearest(&self, rays: u32) -> Vec<u32> {
+        let anchor = DVec3::from(self.scene.anchor).as_vec3();
+        let meets = |ray: Ray<f32>| {
+            let ray: Ray<f32> = Ray::new(ray.origin - anchor, ray.direction);
+            traverse::intersect(&self.scene, &ray, &Exclusion::NOTHING, &mut Counters::default())
+        };
+        sphere_field::rays(rays, 1).map(|ray| meets(ray).map_or(0, |hit| hit.on.primitive + 1)).collect()
     }
 
     fn film(&mut self) -> Result<Film, EngineError> {

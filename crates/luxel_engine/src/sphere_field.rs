@@ -6,6 +6,7 @@
 //! shrink, or its box grows, with their number.) No ground and no other object: rays meet spheres or the sky.
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
+use luxel_geom::Ray;
 use luxel_geom::rng::uniform4;
 use luxel_scene::{ActiveCamera, Camera, Environment, Material, Sphere, Transform};
 
@@ -15,10 +16,8 @@ const HALF_EDGE: f64 = 1.0;
 const FILLED: f64 = 0.03;
 /// Radii lie between these multiples of the one that fills the box.
 const RADIUS_SPREAD: (f64, f64) = (0.6, 1.3);
-/// Large spheres among small ones.
-const LARGE_SPHERES: u32 = 10;
-/// Their radii, metres.
-const LARGE_RADII: (f64, f64) = (0.3, 0.5);
+/// Radii of large spheres among small ones, metres: three to five tenths of the box (robustness.md, O01).
+const LARGE_RADII: (f64, f64) = (0.6, 1.0);
 /// Where the camera stands; it looks at the origin and sees the whole box and sky around it.
 const EYE: DVec3 = DVec3::new(0.9, 0.7, 3.7);
 
@@ -41,10 +40,12 @@ pub enum SphereField {
         /// Picks them.
         seed: u32,
     },
-    /// The same with ten large spheres among them: what the report's heuristic is worst at.
+    /// The same with large spheres among them: what the report's heuristic is worst at.
     Mixed {
         /// How many small ones.
         count: u32,
+        /// How many large ones.
+        large: u32,
         /// Picks them.
         seed: u32,
     },
@@ -56,7 +57,7 @@ impl SphereField {
         match self {
             Self::Materials => 3,
             Self::Random { count, .. } => *count,
-            Self::Mixed { count, .. } => count + LARGE_SPHERES,
+            Self::Mixed { count, large, .. } => count + large,
         }
     }
 
@@ -67,9 +68,10 @@ impl SphereField {
             Self::Random { count, seed } => {
                 (0..count).map(|index| random_sphere(index, count, seed)).collect()
             }
-            Self::Mixed { count, seed } => {
-                (0..count + LARGE_SPHERES).map(|index| mixed_sphere(index, count, seed)).collect()
-            }
+            Self::Mixed { count, large, seed } => (0..large)
+                .map(|index| large_sphere(index, count, seed))
+                .chain((large..count + large).map(|index| random_sphere(index, count, seed)))
+                .collect(),
         }
     }
 }
@@ -94,6 +96,19 @@ pub(crate) fn fill(world: &mut World, field: SphereField) {
     }
 }
 
+/// Rays from anywhere to anywhere: every second one starts in the box, the others around it.
+pub(crate) fn rays(count: u32, seed: u32) -> impl Iterator<Item = Ray<f32>> {
+    (0..count).map(move |index| {
+        let [x, y, z, _] = uniform4::<f64>(index, 3, 0, seed);
+        let [u, v, w, _] = uniform4::<f64>(index, 4, 0, seed);
+        let in_box = |x: f64, y: f64, z: f64| (2.0 * DVec3::new(x, y, z) - DVec3::ONE) * HALF_EDGE;
+        let target = in_box(u, v, w);
+        let around = 3.0 * HALF_EDGE * in_box(x, y, z).try_normalize().unwrap_or(DVec3::X);
+        let origin = if index % 2 == 0 { in_box(x, y, z) } else { around };
+        Ray::new(origin.as_vec3(), (target - origin).as_vec3())
+    })
+}
+
 fn three_materials() -> Vec<(Transform, Sphere, Material)> {
     let materials = [
         Material::lambert(Vec3::new(0.75, 0.25, 0.2)),
@@ -104,11 +119,11 @@ fn three_materials() -> Vec<(Transform, Sphere, Material)> {
     materials.into_iter().enumerate().map(|(i, m)| (place(i), Sphere { radius: 0.5 }, m)).collect()
 }
 
-fn mixed_sphere(index: u32, count: u32, seed: u32) -> (Transform, Sphere, Material) {
-    let (place, small, material) = random_sphere(index, count, seed);
+fn large_sphere(index: u32, count: u32, seed: u32) -> (Transform, Sphere, Material) {
+    let (place, _, material) = random_sphere(index, count, seed);
     let [size, ..] = uniform4::<f64>(index, 2, 0, seed);
     let radius = LARGE_RADII.0 + (LARGE_RADII.1 - LARGE_RADII.0) * size;
-    (place, if index < LARGE_SPHERES { Sphere { radius } } else { small }, material)
+    (place, Sphere { radius }, material)
 }
 
 fn random_sphere(index: u32, count: u32, seed: u32) -> (Transform, Sphere, Material) {
@@ -141,7 +156,7 @@ mod tests {
         let mut world = stage();
         for (field, count) in [
             (SphereField::Random { count: 40, seed: 1 }, 40),
-            (SphereField::Mixed { count: 40, seed: 1 }, 50),
+            (SphereField::Mixed { count: 40, large: 3, seed: 1 }, 43),
             (SphereField::Materials, 3),
         ] {
             fill(&mut world, field);

@@ -126,10 +126,10 @@ impl Chart {
         let (low, high) = self.range();
         if !self.is_log {
             8
-        } else if high / low > 30.0 {
+        } else if high / low > 300.0 {
             5
         } else {
-            10
+            12
         }
     }
 

@@ -18,6 +18,8 @@ use crate::StudyError;
 /// Up to this many spheres, first hits are compared with those of no structure at all, beyond with those of our
 /// octree, which equals it.
 const NAIVE_MOST: u32 = 2000;
+/// Rays from anywhere that are compared.
+const WRONG_RAYS: u32 = 20_000;
 /// Builds are repeated up to this many times, and no longer than this.
 const MOST_BUILDS: usize = 5;
 const BUILD_SECS: f64 = 0.02;
@@ -191,9 +193,13 @@ impl Study<'_, '_> {
             let exact =
                 if group.field.count() <= NAIVE_MOST { SphereAccel::Naive } else { SphereAccel::Octree };
             let right = self.first_hits(stage, &Configuration { accel: exact, ..*configuration })?;
+            let nearest = stage.nearest(WRONG_RAYS);
             let seen = self.first_hits(stage, configuration)?;
-            let wrong = right.iter().zip(&seen).filter(|(right, seen)| right != seen).count();
-            measured.wrong_pixels = Some(wrong as f64 / right.len().max(1) as f64);
+            measured.wrong_pixels = Some(differing(&right, &seen));
+            // The rays are traced on the CPU, so that they say nothing about another backend.
+            if group.backend == BackendChoice::Cpu {
+                measured.wrong_rays = Some(differing(&nearest, &stage.nearest(WRONG_RAYS)));
+            }
         }
         Ok(())
     }
@@ -208,6 +214,12 @@ impl Study<'_, '_> {
         stage.frame()?;
         Ok(stage.first_hits()?)
     }
+}
+
+/// The share in which two answers to the same questions differ.
+fn differing(a: &[u32], b: &[u32]) -> f64 {
+    let count = a.iter().zip(b).filter(|(a, b)| a != b).count();
+    count as f64 / a.len().max(1) as f64
 }
 
 /// The median of some builds, for a single short one tells little.

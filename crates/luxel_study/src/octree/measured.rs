@@ -16,6 +16,7 @@ pub(crate) struct Measured {
     pub(crate) frame_ms: Vec<f64>,
     pub(crate) counters: Counters,
     pub(crate) wrong_pixels: Option<f64>,
+    pub(crate) wrong_rays: Option<f64>,
     pub(crate) look: Option<Look>,
 }
 
@@ -97,6 +98,7 @@ pub(crate) fn record(
         metal_bounces: rounded(of(Counter::MetalBounces) / counted),
         dielectric_bounces: rounded(of(Counter::DielectricBounces) / counted),
         wrong_pixels: measured.wrong_pixels.map(rounded),
+        wrong_rays: measured.wrong_rays.map(rounded),
         noise: noise.map(rounded),
         picture_png: png,
     }

@@ -14,7 +14,9 @@ const COUNTS: [u32; 7] = [10, 50, 100, 250, 500, 1000, 2000];
 /// Spheres of the scene in which qualities are compared.
 const QUALITY_SPHERES: u32 = 100;
 /// Small spheres of the scene with spheres of very different sizes.
-const MIXED_SPHERES: u32 = 1000;
+pub(crate) const MIXED_SPHERES: u32 = 1000;
+/// Large spheres among them (robustness.md, M6).
+const LARGE_SPHERES: [u32; 2] = [3, 10];
 /// Spheres of the scene in which depth is set against quality.
 const DEPTH_QUALITY_SPHERES: u32 = 250;
 /// The sizes of leaves that the report compares, and those that its conclusion asks for.
@@ -110,7 +112,7 @@ const QUICK: Extent = Extent {
     grid_counts: &[10, 50, 250, 500],
     grid_heights: &[24, 36, 48],
     depths: &[0, 1, 2, 3, 4, 5, 7, 10],
-    picture_height: 150,
+    picture_height: 270,
     cpu_height: 72,
     gpu_height: 36,
     depth_height: 48,
@@ -180,7 +182,7 @@ impl Plan {
                 groups.extend(extent.pictures(*backend));
             }
             groups.extend(extent.counts(*backend));
-            groups.push(extent.mixed(*backend));
+            groups.extend(extent.mixed(*backend));
             let is_gpu = *backend == BackendChoice::Gpu;
             if !is_gpu || backends.len() == 1 {
                 groups.extend(extent.grid(*backend));
@@ -245,14 +247,17 @@ impl Extent {
     }
 
     /// Like the counts, but with spheres of very different sizes.
-    fn mixed(&self, backend: BackendChoice) -> Group {
+    fn mixed(&self, backend: BackendChoice) -> impl Iterator<Item = Group> {
         let size = four_by_three(self.height(backend, self.cpu_height));
         let quality = Quality::Low;
         let reports = [SphereAccel::OctreeSeed, SphereAccel::OctreeBase];
         let mut all = vec![ours(size, quality), bvh(size, quality)];
         all.extend(reports.map(|accel| cells(accel, MIXED_SPHERES, size, quality)));
-        let field = SphereField::Mixed { count: MIXED_SPHERES, seed: SEED };
-        Group { field, ..self.group(Sweep::Mixed, backend, MIXED_SPHERES, all) }
+        let group = self.group(Sweep::Mixed, backend, MIXED_SPHERES, all);
+        LARGE_SPHERES.into_iter().map(move |large| Group {
+            field: SphereField::Mixed { count: MIXED_SPHERES, large, seed: SEED },
+            ..group.clone()
+        })
     }
 
     fn grid(&self, backend: BackendChoice) -> Vec<Group> {

@@ -20,7 +20,7 @@ pub enum Sweep {
     Grid,
     /// Every structure over the number of spheres, at low quality.
     Counts,
-    /// A thousand small spheres and ten large ones.
+    /// A thousand small spheres and a few large ones.
     Mixed,
     /// Depth × smallest node, over the number of spheres.
     Depth,
@@ -115,6 +115,10 @@ pub struct Run {
     /// Share of the pixels whose first hit is another than without a structure; where it was compared.
     #[serde(default)]
     pub wrong_pixels: Option<f64>,
+    /// Share of rays from anywhere, half of them from among the spheres, that meet another sphere first than
+    /// without a structure; where it was compared.
+    #[serde(default)]
+    pub wrong_rays: Option<f64>,
     /// Relative error of the picture, estimated from its samples; where there is a picture.
     #[serde(default)]
     pub noise: Option<f64>,
@@ -166,6 +170,7 @@ pub(crate) fn example() -> Run {
         metal_bounces: 10.0,
         dielectric_bounces: 10.0,
         wrong_pixels: None,
+        wrong_rays: None,
         noise: None,
         picture_png: None,
     }

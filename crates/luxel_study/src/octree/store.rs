@@ -49,6 +49,7 @@ fn read_run(line: &str) -> Result<Run, String> {
         run.nodes_per_ray,
         run.tests_per_ray,
         run.wrong_pixels.unwrap_or_default(),
+        run.wrong_rays.unwrap_or_default(),
         run.noise.unwrap_or_default(),
     ];
     if numbers.iter().any(|number| !(0.0..=f64::MAX).contains(number))
@@ -174,7 +175,10 @@ mod tests {
     fn runs_come_back_from_both_files() {
         let folder = tempfile::tempdir().unwrap();
         let store = Folder::open(folder.path()).unwrap();
-        let runs = [example(), Run { wrong_pixels: Some(0.25), noise: None, spheres: 7, ..example() }];
+        let runs = [
+            example(),
+            Run { wrong_pixels: Some(0.25), wrong_rays: Some(0.5), noise: None, spheres: 7, ..example() },
+        ];
         let mut file = store.begin_runs().unwrap();
         runs.iter().for_each(|run| file.append(run).unwrap());
         assert_eq!(read_runs(&file.finish().unwrap()).unwrap(), runs);

@@ -57,9 +57,16 @@ fn findings(on: &Runs<'_>, mixed: &Runs<'_>) -> Vec<(&'static str, String)> {
         let speed =
             against.map_or_else(String::new, |(_, ratio)| format!(", at {} the speed of ours", times(ratio)));
         let sizes = if run.sweep == Sweep::Mixed { " of mixed sizes" } else { "" };
+        let rays = run
+            .wrong_rays
+            .map_or_else(String::new, |rays| format!("; {} of rays from anywhere", percent(rays)));
         found.push((
             "Wrong pixels of the report's heuristic",
-            format!("up to {} ({} spheres{sizes}){speed}", percent(most), count(u64::from(run.spheres))),
+            format!(
+                "up to {} ({} spheres{sizes}){speed}{rays}",
+                percent(most),
+                count(u64::from(run.spheres))
+            ),
         ));
     }
     if let Some(largest) = on.counts().last() {

@@ -1,6 +1,7 @@
 //! Figures 22 to 24: what the report lacks. Wrong pixels against time, memory, time to build.
 use super::super::chart::{Chart, Kind};
 use super::super::figure::{Figure, Part, Table};
+use super::super::plan::MIXED_SPHERES;
 use super::super::record::{Run, Sweep};
 use super::super::select::{OURS, REPORTS, Runs, backend_name, label};
 use super::super::text::{count, list, percent, short, times};
@@ -14,8 +15,10 @@ pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     vec![wrong_pixels(&counts, &runs.of(Sweep::Mixed)), memory(&built), build_time(&built)]
 }
 
-/// The scene in which the heuristic is at its worst.
-const MIXED: &str = "1,000 small and 10 large";
+/// The scenes in which the heuristic is at its worst.
+fn mixed_name(spheres: u32) -> String {
+    format!("{} small and {} large", count(MIXED_SPHERES.into()), spheres.saturating_sub(MIXED_SPHERES))
+}
 
 fn wrong_pixels(runs: &Runs<'_>, mixed: &Runs<'_>) -> Figure {
     let counts = runs.counts();
@@ -37,12 +40,19 @@ fn wrong_pixels(runs: &Runs<'_>, mixed: &Runs<'_>) -> Figure {
                 .iter()
                 .filter_map(|spheres| wrong_row(&on.at(*spheres), backend, count(u64::from(*spheres)))),
         );
-        rows.extend(wrong_row(&mixed.on(backend), backend, MIXED.to_owned()));
-        if let Some(wrong) = mixed.on(backend).with(REPORTS).first().and_then(|run| run.wrong_pixels) {
-            cases.push(wrong > 0.0);
+        for spheres in mixed.counts() {
+            let at = mixed.on(backend).at(spheres);
+            rows.extend(wrong_row(&at, backend, mixed_name(spheres)));
+            let Some(run) = at.with(REPORTS).first().cloned() else { continue };
+            let Some(pixels) = run.wrong_pixels else { continue };
+            cases.push(pixels > 0.0);
+            let rays = run.wrong_rays.map_or_else(String::new, |rays| {
+                format!(", and by {} of rays from anywhere,", percent(rays))
+            });
             reasons.push(format!(
-                "{} in the scene of {MIXED} on the {}",
-                percent(wrong),
+                "{} of the pixels{rays} in the scene of {} on the {}",
+                percent(pixels),
+                mixed_name(spheres),
                 backend_name(backend)
             ));
         }
@@ -58,6 +68,7 @@ fn wrong_pixels(runs: &Runs<'_>, mixed: &Runs<'_>) -> Figure {
         "backend",
         "spheres",
         "wrong pixels",
+        "wrong rays",
         "octree-seed",
         "octree-base",
         "octree (ours)",
@@ -66,8 +77,9 @@ fn wrong_pixels(runs: &Runs<'_>, mixed: &Runs<'_>) -> Figure {
     Figure {
         number: 22,
         title: "Wrong pixels of the report's heuristic against its time".to_owned(),
-        shows: "The share of pixels whose first hit is another sphere than without a structure, and how fast the \
-                heuristic is against our exact octree (above 1: the heuristic is faster)."
+        shows: "The share of pixels whose first hit is another sphere than without a structure, the same share of rays \
+                from anywhere (half of them start among the spheres), and how fast the heuristic is against our exact \
+                octree (above 1: the heuristic is faster)."
             .to_owned(),
         claim: "Ending the search at the first node with a hit “can cause some occasional visual glitches”.".to_owned(),
         verdict: Verdict::of(&cases, format!("The nearest sphere is missed in {}.", list(reasons))),
@@ -88,6 +100,7 @@ fn wrong_row(runs: &Runs<'_>, backend: &str, spheres: String) -> Option<Vec<Stri
         backend_name(backend).to_owned(),
         spheres,
         seed.wrong_pixels.map_or_else(|| "–".to_owned(), percent),
+        seed.wrong_rays.map_or_else(|| "–".to_owned(), percent),
         said(Some(seed.frame_ms)),
         said(ms("octree-base")),
         said(ms(OURS)),
