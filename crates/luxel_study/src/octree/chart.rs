@@ -3,6 +3,7 @@
 //! Drawn by `plotters` without any font: texts are elements that the reader's browser sets. The legend is made by
 //! the page from the names and colours of the series, so that it never covers data.
 use plotters::coord::Shift;
+use plotters::coord::combinators::BindKeyPoints;
 use plotters::coord::ranged1d::{Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::drawing::DrawingAreaErrorKind;
@@ -100,7 +101,8 @@ impl Chart {
         let mut builder = ChartBuilder::on(area);
         builder.margin(12).x_label_area_size(46).y_label_area_size(64);
         if self.is_log {
-            let mut chart = builder.build_cartesian_2d(across, (low..high).log_scale())?;
+            let ticks = (low..high).log_scale().with_key_points(log_ticks(low, high));
+            let mut chart = builder.build_cartesian_2d(across, ticks)?;
             self.fill(&mut chart, low)?;
         } else {
             let mut chart = builder.build_cartesian_2d(across, low..high)?;
@@ -119,18 +121,6 @@ impl Chart {
         }
         let least = self.shown().chain(level).fold(most, f64::min);
         (least / 1.5, (most * 1.5).max(least * 3.0))
-    }
-
-    /// How many values the axis names at most: decades only, unless there are too few of them.
-    fn tick_count(&self) -> usize {
-        let (low, high) = self.range();
-        if !self.is_log {
-            8
-        } else if high / low > 300.0 {
-            5
-        } else {
-            12
-        }
     }
 
     fn fill<'a, Y>(
@@ -152,7 +142,7 @@ impl Chart {
             .x_desc(self.x)
             .y_desc(self.y)
             .x_labels(2 * self.categories.len() + 1)
-            .y_labels(self.tick_count())
+            .y_labels(8)
             .max_light_lines(0)
             .x_label_formatter(&|place| self.category(*place))
             .y_label_formatter(&|value| short(*value))
@@ -199,6 +189,14 @@ impl Chart {
     }
 }
 
+/// 1, 2 and 5 times the powers of ten of a range, or the powers alone if it is wide.
+fn log_ticks(low: f64, high: f64) -> Vec<f64> {
+    let steps: &[f64] = if high / low > 1000.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let decades = low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let ticks = decades.flat_map(|decade| steps.iter().map(move |step| step * 10f64.powi(decade)));
+    ticks.filter(|tick| (low..=high).contains(tick)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -239,6 +237,12 @@ mod tests {
         }
         assert!(!chart(Kind::Bars, false, vec![Some(0.0)]).is_empty());
         chart(Kind::Bars, false, vec![Some(0.0)]).svg().unwrap();
+    }
+
+    #[test]
+    fn a_logarithmic_axis_names_round_values_of_its_range() {
+        assert_eq!(log_ticks(15.0, 210.0), [20.0, 50.0, 100.0, 200.0]);
+        assert_eq!(log_ticks(0.5, 20_000.0), [1.0, 10.0, 100.0, 1000.0, 10_000.0]);
     }
 
     #[test]
