@@ -35,7 +35,7 @@ const ROOMS: [Room; 15] = [
         ],
         guarded: &["bevy_ecs"],
     },
-    Room { name: "luxel_study", rooms: &["luxel_engine"], guarded: &[] },
+    Room { name: "luxel_study", rooms: &["luxel_engine", "luxel_scene", "luxel_geom"], guarded: &["bevy_ecs"] },
     Room { name: "luxel_testkit", rooms: &["luxel_geom", "luxel_flat"], guarded: &[] },
     Room { name: "luxel_cli", rooms: &["luxel_engine", "luxel_study"], guarded: &["clap"] },
     Room { name: "luxel", rooms: &["luxel_cli"], guarded: &[] },

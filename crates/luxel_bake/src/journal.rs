@@ -75,6 +75,16 @@ pub enum BakeWarning {
     },
 }
 
+impl BakeWarning {
+    /// Why an object is left out; `None` if it is shown.
+    pub fn reason(&self) -> Option<Disabled> {
+        match self {
+            Self::Disabled { reason, .. } => Some(*reason),
+            Self::NonUniformSphere { .. } => None,
+        }
+    }
+}
+
 impl fmt::Display for BakeWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::assets::Built;
 use crate::cloud::Cloud;
-use crate::journal::Complaints;
+use crate::journal::{BakeWarning, Complaints, Disabled};
 use crate::materials::MaterialSlots;
 use crate::publish::Published;
 
@@ -37,6 +37,9 @@ pub struct BakeReport {
     /// What is drawn otherwise than the scene says, one line each.
     pub warnings: Vec<String>,
 }
+
+/// Warnings of one kind that are told one by one.
+const WARNINGS_ALIKE: usize = 5;
 
 /// Facts about the structure over the spheres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -84,7 +87,7 @@ pub struct VolumeFacts {
 /// The facts of a world that a baker ran on. Costs a walk through every structure.
 pub(crate) fn report(world: &World) -> BakeReport {
     let complaints = world.get_resource::<Complaints>();
-    let warnings = complaints.map_or(Vec::new(), |c| c.warnings.values().map(ToString::to_string).collect());
+    let warnings = complaints.map_or(Vec::new(), |c| told(c.warnings.values()));
     let Some(scene) = world.get_resource::<Published>().and_then(|published| published.latest.as_ref())
     else {
         return BakeReport { warnings, ..BakeReport::default() };
@@ -104,6 +107,24 @@ pub(crate) fn report(world: &World) -> BakeReport {
         bytes: bytes(scene),
         warnings,
     }
+}
+
+/// The warnings in words: of each kind the first few, then how many more there are.
+fn told<'a>(warnings: impl Iterator<Item = &'a BakeWarning>) -> Vec<String> {
+    let mut kinds: Vec<(Option<Disabled>, Vec<&BakeWarning>)> = Vec::new();
+    for warning in warnings {
+        let kind = warning.reason();
+        match kinds.iter_mut().find(|(other, _)| *other == kind) {
+            Some((_, alike)) => alike.push(warning),
+            None => kinds.push((kind, vec![warning])),
+        }
+    }
+    let lines = kinds.into_iter().flat_map(|(_, alike)| {
+        let more = alike.len().saturating_sub(WARNINGS_ALIKE);
+        let rest = (more > 0).then(|| format!("and {more} more objects likewise"));
+        alike.into_iter().take(WARNINGS_ALIKE).map(ToString::to_string).chain(rest)
+    });
+    lines.collect()
 }
 
 fn meshes(world: &World, scene: &FlatScene) -> Vec<MeshFacts> {
@@ -164,4 +185,21 @@ fn bytes(scene: &FlatScene) -> Vec<(&'static str, u64)> {
     ]
     .map(|(name, bytes)| (name, bytes as u64))
     .to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_warnings_of_a_kind_are_counted() {
+        let hidden =
+            |i: u32| BakeWarning::Disabled { entity: format!("ball {i}"), reason: Disabled::BadRadius };
+        let odd = BakeWarning::NonUniformSphere { entity: "egg".to_owned() };
+        let warnings: Vec<BakeWarning> = (0..20).map(hidden).chain([odd]).collect();
+        let told = told(warnings.iter());
+        assert_eq!(told.len(), WARNINGS_ALIKE + 2);
+        assert_eq!(told[WARNINGS_ALIKE], "and 15 more objects likewise");
+        assert!(told[0].starts_with("ball 0") && told[WARNINGS_ALIKE + 1].starts_with("egg"));
+    }
 }

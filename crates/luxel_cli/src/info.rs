@@ -11,8 +11,10 @@ use crate::reply;
 /// Describes a scene.
 pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
     let mut engine = Engine::load(&args.file)?;
+    // Of the scene as it is in its file, whatever is asked for besides.
+    let scene_hash = engine.scene_hash()?;
     args.sphere_accel.into_iter().for_each(|accel| engine.use_sphere_accel(accel));
-    let info = engine.info()?;
+    let info = SceneInfo { scene_hash, ..engine.info()? };
     if args.json {
         reply::print_json(&info)?;
     } else {

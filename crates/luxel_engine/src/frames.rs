@@ -18,7 +18,6 @@ use luxel_geom::Ray;
 use luxel_scene::{RenderSettings, SphereAccel, SphereCloud};
 
 use crate::output::Picture;
-use crate::sphere_field::{self, SphereField};
 use crate::{BackendChoice, ChosenTracer, Engine, EngineError};
 
 /// Under which settings frames are traced.
@@ -59,13 +58,13 @@ pub struct FrameStage {
 }
 
 impl FrameStage {
-    /// An empty world on a backend.
+    /// A world on a backend; `name` stands for a file's in messages.
     ///
     /// # Errors
     /// When the backend cannot be had.
-    pub fn open(backend: BackendChoice) -> Result<Self, EngineError> {
+    pub fn open(world: World, name: &str, backend: BackendChoice) -> Result<Self, EngineError> {
         Ok(Self {
-            engine: Engine::over(sphere_field::stage(), std::path::Path::new("(octree study)"))?,
+            engine: Engine::over(world, std::path::Path::new(name))?,
             chosen: backend.open()?,
             scene: Arc::default(),
             spp: 1,
@@ -79,13 +78,13 @@ impl FrameStage {
         self.chosen.tracer.facts()
     }
 
-    /// Replaces the spheres. They are taken in without a structure, so that what [`FrameStage::set`] asks for next is
-    /// built anew, not edited.
+    /// Changes the world. Its spheres are taken in without a structure, so that what [`FrameStage::set`] asks for
+    /// next is built anew, not edited.
     ///
     /// # Errors
     /// When the scene cannot be baked.
-    pub fn fill(&mut self, field: SphereField) -> Result<(), EngineError> {
-        sphere_field::fill(&mut self.engine.world, field);
+    pub fn fill(&mut self, change: impl FnOnce(&mut World)) -> Result<(), EngineError> {
+        change(&mut self.engine.world);
         self.engine.world.resource_mut::<SphereCloud>().accel = SphereAccel::Naive;
         self.scene = self.engine.bake()?;
         Ok(())
@@ -183,15 +182,15 @@ impl FrameStage {
         Ok(hits.iter().map(|hit| if hit.instance == 0 { 0 } else { hit.primitive + 1 }).collect())
     }
 
-    /// What each of a fixed set of rays, half of them from among the spheres, meets first: stable id of the sphere,
-    /// plus one; 0 for nothing. Traced on the CPU, whatever the stage's backend.
-    pub fn nearest(&self, rays: u32) -> Vec<u32> {
+    /// What each ray (in world space) meets first: stable id of the sphere, plus one; 0 for nothing. Traced on the
+    /// CPU, whatever the stage's backend.
+    pub fn nearest(&self, rays: impl Iterator<Item = Ray<f32>>) -> Vec<u32> {
         let anchor = DVec3::from(self.scene.anchor).as_vec3();
         let meets = |ray: Ray<f32>| {
             let ray: Ray<f32> = Ray::new(ray.origin - anchor, ray.direction);
             traverse::intersect(&self.scene, &ray, &Exclusion::NOTHING, &mut Counters::default())
         };
-        sphere_field::rays(rays, 1).map(|ray| meets(ray).map_or(0, |hit| hit.on.primitive + 1)).collect()
+        rays.map(|ray| meets(ray).map_or(0, |hit| hit.on.primitive + 1)).collect()
     }
 
     fn film(&mut self) -> Result<Film, EngineError> {

@@ -33,7 +33,8 @@ impl SphereAccelFacts {
         });
         let cut_off = self.cut_off.then(|| {
             format!(
-                "the {} is cut off: dividing it as far as asked would list too many spheres twice",
+                "the {} is cut off: divided as far as asked it would list its spheres too often; a smaller \
+                 max_depth or a larger min_spheres lets it be whole",
                 self.name
             )
         });

@@ -75,6 +75,9 @@ fn from_ron<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, SceneEr
         path: path.to_owned(),
         line: span.start.line,
         column: span.start.col,
-        message: code.to_string(),
+        message: match code {
+            ron::Error::IntegerOutOfBounds => "the number is out of the range of this field".to_owned(),
+            other => other.to_string(),
+        },
     })
 }

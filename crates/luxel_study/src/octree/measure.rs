@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use luxel_engine::{BackendChoice, FrameSettings, FrameStage, SphereAccel};
 
+use super::field;
 use super::measured::{Look, Measured, record};
 use super::origin::Origin;
 use super::picture::png;
@@ -86,7 +87,7 @@ struct Study<'a, 'b> {
 
 impl Study<'_, '_> {
     fn on(&mut self, backend: BackendChoice) -> Result<ControlFlow<()>, StudyError> {
-        let mut stage = FrameStage::open(backend)?;
+        let mut stage = FrameStage::open(field::stage(), "(octree study)", backend)?;
         let groups = self.plan.groups.iter().filter(|group| group.backend == backend);
         for group in groups {
             if self.group(&mut stage, group)?.is_break() {
@@ -97,7 +98,7 @@ impl Study<'_, '_> {
     }
 
     fn group(&mut self, stage: &mut FrameStage, group: &Group) -> Result<ControlFlow<()>, StudyError> {
-        stage.fill(group.field)?;
+        stage.fill(|world| field::fill(world, group.field))?;
         let mut measured: Vec<Measured> = group.configurations.iter().map(|_| Measured::default()).collect();
         for round in 0..self.plan.rounds {
             for (i, (configuration, measured)) in group.configurations.iter().zip(&mut measured).enumerate() {
@@ -193,12 +194,13 @@ impl Study<'_, '_> {
             let exact =
                 if group.field.count() <= NAIVE_MOST { SphereAccel::Naive } else { SphereAccel::Octree };
             let right = self.first_hits(stage, &Configuration { accel: exact, ..*configuration })?;
-            let nearest = stage.nearest(WRONG_RAYS);
+            let nearest = stage.nearest(field::rays(WRONG_RAYS, SEED));
             let seen = self.first_hits(stage, configuration)?;
             measured.wrong_pixels = Some(differing(&right, &seen));
             // The rays are traced on the CPU, so that they say nothing about another backend.
             if group.backend == BackendChoice::Cpu {
-                measured.wrong_rays = Some(differing(&nearest, &stage.nearest(WRONG_RAYS)));
+                measured.wrong_rays =
+                    Some(differing(&nearest, &stage.nearest(field::rays(WRONG_RAYS, SEED))));
             }
         }
         Ok(())

@@ -12,6 +12,7 @@
 //! study that is stopped leaves what it has; figures 1 to 21 are always there, if only to say that they lack runs.
 mod chart;
 mod cube;
+mod field;
 mod figure;
 mod figures;
 mod measure;

@@ -1,7 +1,9 @@
 //! What is measured: groups of configurations whose frames are taken in turns.
 //!
 //! A group holds what a figure compares, so that a machine that becomes slower or warmer becomes so for all of it.
-use luxel_engine::{BackendChoice, QUALITIES, Quality, SphereAccel, SphereCloud, SphereField};
+use luxel_engine::{BackendChoice, QUALITIES, Quality, SphereAccel, SphereCloud};
+
+use super::field::SphereField;
 
 use super::record::Sweep;
 

@@ -30,7 +30,7 @@ const SKY: Environment = Environment::Gradient {
 
 /// A scene of the octree study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum SphereField {
+pub(crate) enum SphereField {
     /// Three spheres: Lambert, metal, dielectric from left to right.
     Materials,
     /// Random spheres of three materials at random places.
@@ -53,7 +53,7 @@ pub enum SphereField {
 
 impl SphereField {
     /// Number of spheres.
-    pub fn count(&self) -> u32 {
+    pub(crate) fn count(&self) -> u32 {
         match self {
             Self::Materials => 3,
             Self::Random { count, .. } => *count,
