@@ -1,5 +1,5 @@
-//! The GPU fails and the job does not: a lost device, a scene that does not fit, a graph in another order; and the
-//! resolve node shows what the film's own display shows.
+//! The GPU fails and the job does not: a lost device, searches cut short, a scene that does not fit, a graph in another
+//! order; and the resolve node shows what the film's own display shows.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 #[path = "support/asset.rs"]
 mod asset;
@@ -7,16 +7,19 @@ mod asset;
 mod traced;
 
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::Arc;
 
 use asset::asset;
+use glam::{DVec3, Vec3};
 use luxel_cpu::CpuTracer;
-use luxel_engine::{BackendChoice, ChosenTracer, RenderEvent, RenderJob};
+use luxel_engine::{BackendChoice, ChosenTracer, Engine, RenderEvent, RenderJob};
 use luxel_film::tracer::{Backend, TraceError, TraceRequest, Tracer};
 use luxel_film::{Display, ToneMap, View};
-use luxel_flat::{FlatScene, Heap, Triangle};
+use luxel_flat::{Counter, FlatScene, Heap, Triangle};
 use luxel_gpu::{Gpu, GpuRequest, LimitsTier, SlicePolicy, SoftwarePolicy, testing::gpu_or_fail};
 use luxel_render::{GpuTracer, NODES};
+use luxel_scene::{Camera, Material, RenderSettings, Sphere, SphereAccel, SphereCloud, Transform};
 use luxel_testkit::Random;
 use traced::trace;
 
@@ -55,6 +58,45 @@ fn a_device_lost_in_mid_job_leaves_the_job_to_the_cpu() {
     let on_cpu = RenderJob { backend: BackendChoice::Cpu, ..job };
     let expected = asset("showcase.ron", SIZE).render(&on_cpu, &mut |_| ControlFlow::Continue(())).unwrap();
     assert!(rendered.film == expected.film, "the CPU made another picture after the loss");
+}
+
+/// More spheres without a structure than a software driver lets a thread test.
+fn too_many_to_test() -> Engine {
+    let mut world = luxel_scene::empty_world();
+    let settings = RenderSettings { width: 8, height: 8, max_depth: 2, ..RenderSettings::default() };
+    world.insert_resource(settings);
+    world.insert_resource(SphereCloud { accel: SphereAccel::Naive, ..SphereCloud::default() });
+    let camera = Camera { vertical_fov: 0.7, lens_radius: 0.0, focus_distance: 1.0 };
+    luxel_scene::spawn(&mut world, (camera, Transform::at(DVec3::Z * 4.0)));
+    let mut random = Random::new(1);
+    for _ in 0..70_000 {
+        let place = Transform::at(random.point(1.0).as_dvec3());
+        luxel_scene::spawn(&mut world, (Sphere { radius: 0.01 }, place, Material::lambert(Vec3::splat(0.5))));
+    }
+    Engine::over(world, Path::new("many")).unwrap()
+}
+
+#[test]
+fn searches_that_a_driver_cuts_short_leave_the_job_to_the_cpu() {
+    let Some(gpu) = gpu_or_fail() else { return };
+    let job = RenderJob { spp: Some(2), ..RenderJob::default() };
+    let chosen = ChosenTracer { tracer: Box::new(gpu_tracer(&gpu)), because: "the test says so".to_owned() };
+    let mut engine = too_many_to_test();
+    let rendered = engine.render_with(chosen, &job, &mut |_| ControlFlow::Continue(())).unwrap();
+    let on_cpu = RenderJob { backend: BackendChoice::Cpu, ..job };
+    let expected = too_many_to_test().render(&on_cpu, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(rendered.stats.counters[Counter::TraversalCaps], 0);
+    if rendered.facts.backend == Backend::Gpu {
+        println!("this driver cuts nothing");
+        assert_eq!(rendered.notices, Vec::<String>::new());
+        return;
+    }
+    assert!(rendered.film == expected.film, "the CPU did not take the same job from the start");
+    assert_eq!(rendered.notices.len(), 1);
+    let notice = &rendered.notices[0];
+    assert!(notice.contains("cut") && notice.contains("the CPU goes on"), "{notice}");
+    let told = rendered.summary(&engine).notices;
+    assert_eq!(told.iter().filter(|line| line.contains("cut")).collect::<Vec<_>>(), [notice]);
 }
 
 #[test]

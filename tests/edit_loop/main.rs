@@ -23,7 +23,7 @@ use std::time::Instant;
 
 use bevy_ecs::prelude::*;
 use luxel_bake::{BakeCounters, Baker};
-use luxel_flat::{FlatScene, KIND_MESH};
+use luxel_flat::{FlatScene, Instance, KIND_MESH};
 use luxel_scene::{SphereAccel, SphereCloud, empty_world, load, save, world_hash};
 
 use oracle::{assert_same, trace, trace_naive};
@@ -166,7 +166,12 @@ fn a_damaged_structure_is_found_out() {
     let rays = rays::mixed(&scene, SEED, 20_000);
     let naive = trace_naive(&scene, &rays);
     assert_eq!(oracle::differing(&trace(&scene, &rays), &naive), Vec::<usize>::new());
-    let mesh = scene.instances.as_slice().iter().find(|i| i.kind == KIND_MESH && i.node_count > 0).unwrap();
+    // A child of the root: of the TLAS, and of the mesh that most rays see.
+    let rays_at =
+        |mesh: &&Instance| naive.iter().flatten().filter(|seen| seen.instance == mesh.stable_id).count();
+    let meshes = scene.instances.as_slice().iter().filter(|i| i.kind == KIND_MESH && i.node_count > 1);
+    let mesh = meshes.max_by_key(rays_at).unwrap();
+    assert!(rays_at(&mesh) > 100, "{} rays", rays_at(&mesh));
     for index in [scene.params.tlas_first + 1, mesh.node_first + 1] {
         let mut damaged = FlatScene::clone(&scene);
         let node = damaged.bvh_nodes.get_mut(index as usize, 0);

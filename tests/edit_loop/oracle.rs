@@ -10,7 +10,8 @@ use rayon::prelude::*;
 pub(crate) struct Seen {
     t: u32,
     uv: [u32; 2],
-    instance: u32,
+    /// Stable id of the instance.
+    pub(crate) instance: u32,
     primitive: u32,
     material: [u32; 9],
 }

@@ -20,10 +20,12 @@
 //! | S06 | between two mirrors | `mirrors::s06_between_two_mirrors` |
 //! | S08 | bad radii | `accuracy::s08_bad_radii_are_never_hit` |
 //!
-//! Besides: a structure that is exchanged within one world (`upload`), and a driver that ends long loops (`shapes`).
+//! Besides: a structure that is exchanged within one world (`upload`), and a driver that ends long loops (`cuts`; in meshes,
+//! volumes and the TLAS, too).
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod accuracy;
 mod compare;
+mod cuts;
 mod mirrors;
 mod o01;
 mod scene;

@@ -15,6 +15,9 @@ use crate::scene::scene;
 const MOST_BOUNCES: usize = 64;
 const GAP: f32 = 1e-4;
 const RADIUS: f32 = 1.0;
+/// How far a point may be from that in double precision, in radii. The mirrors bulge towards each other, so each
+/// reflection adds to a ray's slant, and rounding grows: from 1.2e-7 at the first to 4.4e-6 at the 64th.
+const SAME_POINT: f64 = 1e-5;
 
 /// Sphere and point of each reflection.
 type Reflections = Vec<(u32, DVec3)>;
@@ -84,14 +87,13 @@ fn s06_between_two_mirrors() {
         for (ray, path) in rays.iter().zip(on_gpu(&mut shooter, &scene, &rays)) {
             let expected = in_double_precision(&scene, ray);
             assert!(path.windows(2).all(|pair| pair[0].0 != pair[1].0), "a mirror meets itself: {ray:?}");
-            assert!(path.len() <= expected.len() + 1, "{} for {}", path.len(), expected.len());
-            assert!(path.len() + 1 >= expected.len().min(5), "{} for {}", path.len(), expected.len());
-            for ((a, p), (b, q)) in path.iter().zip(&expected).take(5) {
-                assert!(a == b && (*p - *q).length() < 1e-4 * f64::from(RADIUS), "{p} {q}");
+            assert_eq!(path.len(), expected.len(), "{ray:?}");
+            for ((a, p), (b, q)) in path.iter().zip(&expected) {
+                assert!(a == b && (*p - *q).length() < SAME_POINT * f64::from(RADIUS), "{p} {q}");
             }
             longest = longest.max(path.len());
         }
     }
     println!("S06: up to {longest} reflections");
-    assert!(longest > 5, "no ray stays between the mirrors");
+    assert_eq!(longest, MOST_BOUNCES, "no ray stays between the mirrors");
 }

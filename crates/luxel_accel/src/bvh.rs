@@ -24,6 +24,7 @@ use luxel_flat::{BvhNode, LEAF_COUNT_SHIFT, MAX_LEAF_SIZE};
 use luxel_geom::Aabb;
 
 use crate::AccelError;
+pub(crate) use split::{Primitive, split};
 pub use validate::depth;
 pub(crate) use validate::validate_tree;
 

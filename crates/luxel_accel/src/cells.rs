@@ -9,7 +9,9 @@
 //! - children are in the order of the bits x, y, z, not z, x, y, as everywhere in Luxel;
 //! - a leaf lists copies of its spheres, not indices: one access less for a ray, one binding less for the GPU;
 //! - the tree is built breadth-first, straight into the flat arrays, and stops growing at [`CELL_BUDGET_BYTES`];
-//! - the overlap test has a margin, so that no ray meets a sphere where it is not listed (see [`cell`](self)).
+//! - the overlap test has a margin, so that no ray that starts less than ten root edges away meets a sphere where it is
+//!   not listed; from farther out a ray that grazes a silhouette, where rounding decides, may be answered otherwise
+//!   than by testing all spheres (`cell.rs`).
 //!
 //! Edits only change the list of spheres; [`CellOctree::finish`] builds the tree anew.
 //!
@@ -24,7 +26,7 @@ use luxel_flat::{Heap, LeafSphere, MAX_OCTREE_DEPTH, OctreeNode, SphereRecord};
 use luxel_geom::Aabb;
 
 use crate::slots::SphereSlots;
-use crate::{AccelError, OctreeOptions, OctreeWork};
+use crate::{AccelError, OctreeOptions, StructureWork};
 
 /// Neither the nodes nor the lists of an octree of cells become larger: what a storage binding may have in WebGPU
 /// without asking for more. Nodes at which this ends are leaves, however many spheres they list. Only the list of
@@ -57,7 +59,7 @@ pub struct CellOctree {
     is_cut_off: bool,
     /// Spheres changed since the tree was built.
     is_stale: bool,
-    work: OctreeWork,
+    work: StructureWork,
 }
 
 impl CellOctree {
@@ -78,10 +80,10 @@ impl CellOctree {
             leaf_spheres: Heap::default(),
             depth: 0,
             is_cut_off: false,
-            is_stale: true,
-            work: OctreeWork::default(),
+            is_stale: false,
+            work: StructureWork::default(),
         };
-        octree.finish(revision);
+        octree.build_tree(revision);
         Ok(octree)
     }
 
@@ -127,9 +129,13 @@ impl CellOctree {
 
     /// Builds the tree anew if spheres changed since it was built.
     pub fn finish(&mut self, revision: u64) {
-        if !std::mem::take(&mut self.is_stale) {
-            return;
+        if std::mem::take(&mut self.is_stale) {
+            self.work.rebuilds += 1;
+            self.build_tree(revision);
         }
+    }
+
+    fn build_tree(&mut self, revision: u64) {
         let tree = build::Tree::build(&self.slots, &self.options);
         self.work.nodes_touched += tree.nodes.len() as u64;
         self.work.spheres_touched += tree.leaf_spheres.len() as u64;
@@ -189,7 +195,7 @@ impl CellOctree {
     }
 
     /// What has been done so far.
-    pub fn work(&self) -> OctreeWork {
+    pub fn work(&self) -> StructureWork {
         self.work
     }
 }

@@ -4,10 +4,9 @@
 //! |---|---|---|
 //! | mesh BVH | [`build_mesh`] over [`build_bvh`] | [`BvhNode`](luxel_flat::BvhNode), [`Triangle`](luxel_flat::Triangle) |
 //! | TLAS | [`build_tlas`] | [`BvhNode`](luxel_flat::BvhNode) |
-//! | sphere BVH | [`SphereBvh`], refitted in place | [`BvhNode`](luxel_flat::BvhNode), [`LeafSphere`](luxel_flat::LeafSphere) |
 //! | loose octree of spheres | [`SphereOctree`], edited in place | [`OctreeNode`](luxel_flat::OctreeNode) |
 //! | octree of cells over spheres | [`CellOctree`] | [`OctreeNode`](luxel_flat::OctreeNode), [`LeafSphere`](luxel_flat::LeafSphere) |
-//! | BVH over spheres | [`SphereBvh`] | [`BvhNode`](luxel_flat::BvhNode), [`LeafSphere`](luxel_flat::LeafSphere) |
+//! | BVH over spheres | [`SphereBvh`], edited in place | [`BvhNode`](luxel_flat::BvhNode), [`LeafSphere`](luxel_flat::LeafSphere) |
 //! | any of these three, or none | [`SphereStructure`] | as above |
 //! | voxel octree | [`build_svo`] | [`SvoNode`](luxel_flat::SvoNode) |
 //!
@@ -36,16 +35,19 @@ mod mesh;
 mod octree;
 mod slots;
 mod sphere_bvh;
+mod sphere_list;
 mod sphere_structure;
 mod svo;
 mod tlas;
+mod work;
 
 pub use bvh::{Bvh, BvhOptions, MAX_BVH_DEPTH, build_bvh, depth};
 pub use cells::{CELL_BUDGET_BYTES, CellOctree};
 pub use error::AccelError;
 pub use mesh::{MeshBvh, build_mesh};
-pub use octree::{OctreeOptions, OctreeWork, RootCell, SphereOctree, octree_depth, validate_octree};
+pub use octree::{OctreeOptions, RootCell, SphereOctree, octree_depth, validate_octree};
 pub use sphere_bvh::SphereBvh;
 pub use sphere_structure::{SphereOptions, SphereStructure};
 pub use svo::{Svo, SvoVoxel, build_svo};
 pub use tlas::{build_tlas, validate_tlas};
+pub use work::StructureWork;

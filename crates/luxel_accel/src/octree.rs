@@ -22,8 +22,8 @@ mod validate;
 use luxel_flat::{Heap, MAX_OCTREE_DEPTH, NONE, OctreeNode, SphereRecord};
 use luxel_geom::Aabb;
 
-use crate::AccelError;
 use crate::slots::{check_free, check_sphere, store};
+use crate::{AccelError, StructureWork};
 use cell::Cell;
 pub use cell::RootCell;
 pub use validate::validate_octree;
@@ -41,19 +41,6 @@ impl Default for OctreeOptions {
     fn default() -> Self {
         Self { max_depth: MAX_OCTREE_DEPTH, min_spheres: 8 }
     }
-}
-
-/// What the edits of an octree have cost since it was made: evidence that an edit rebuilt nothing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct OctreeWork {
-    /// Nodes descended through, written, or read for the box of their parent.
-    pub nodes_touched: u64,
-    /// Spheres linked, unlinked, or looked at on the way along a chain.
-    pub spheres_touched: u64,
-    /// Blocks of eight children taken.
-    pub blocks_allocated: u64,
-    /// Blocks of eight children given back.
-    pub blocks_freed: u64,
 }
 
 /// An octree over spheres in slots; see the module's text.
@@ -80,7 +67,7 @@ pub struct SphereOctree {
     free_blocks: Vec<u32>,
     root: RootCell,
     options: OctreeOptions,
-    work: OctreeWork,
+    work: StructureWork,
 }
 
 impl SphereOctree {
@@ -92,7 +79,7 @@ impl SphereOctree {
             free_blocks: Vec::new(),
             root,
             options,
-            work: OctreeWork::default(),
+            work: StructureWork::default(),
         }
     }
 
@@ -153,7 +140,7 @@ impl SphereOctree {
     }
 
     /// What has been done so far.
-    pub fn work(&self) -> OctreeWork {
+    pub fn work(&self) -> StructureWork {
         self.work
     }
 

@@ -1,20 +1,35 @@
-//! The sphere cloud's BVH: moved spheres are followed by a refit, new and removed ones by a rebuild.
+//! The sphere cloud's BVH, edited in place.
 //!
-//! Edits only take notes; [`SphereBvh::finish`] brings the tree up to date after a batch of them. A refit keeps
-//! the tree's shape and recomputes boxes from the leaves up (Wald, Boulos, Shirley 2007, "Ray Tracing Deformable
-//! Scenes Using Dynamic Bounding Volume Hierarchies"): along the paths from the touched leaves to the root if
-//! they are few, else over all nodes, children before parents. Results stay exact; only the quality of the tree
-//! suffers, and whoever holds it decides when to build it anew.
+//! A sphere comes and goes along one path from the root: the tree's shape changes where it is, boxes and links on
+//! the way up (`insert.rs`, `remove.rs`). Moves only take notes; [`SphereBvh::finish`] takes them in. If they are
+//! few, a sphere that left the box of its leaf's parent goes to another place, and the others' paths to the root are
+//! refitted. If they are many, the tree keeps its shape and all boxes are recomputed from the leaves up (Wald, Boulos,
+//! Shirley 2007, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies"): results stay exact, but
+//! the quality suffers, and whoever holds the tree decides when to build it anew. For spheres that came and went, and
+//! for room that is no longer used, there is a bound (`wear.rs`), beyond which `finish` builds the tree anew; so it
+//! does where an insertion would exceed the depth bound.
 //!
-//! Invariants, checked by [`SphereBvh::validate`] after `finish`: those of [`Bvh`](crate::Bvh); `leaf_spheres` are
-//! copies of the live spheres, each once.
+//! Deviation from [`Bvh`](crate::Bvh): children of an edited tree may stand before their parents; pairs of nodes
+//! and blocks of leaf entries that are not in use hold records that no walk comes to.
+//!
+//! Invariants, checked by [`SphereBvh::validate`] after `finish`: those of `Bvh` but for the order; leaves list
+//! copies of the live spheres, each once; what is not in the tree is free, and listed as such once.
+mod heaps;
+mod insert;
+mod refit;
+mod remove;
+mod validate;
+mod wear;
+
 use glam::Vec3;
 use luxel_flat::{BvhNode, Heap, LeafSphere, MAX_LEAF_SIZE, NONE, SphereRecord};
 use luxel_geom::Aabb;
 
-use crate::bvh::validate_tree;
 use crate::slots::{SphereSlots, sphere_bounds};
-use crate::{AccelError, BvhOptions, OctreeWork, build_bvh};
+use crate::{AccelError, BvhOptions, StructureWork, build_bvh};
+
+/// The root, if there is a node.
+const ROOT: u32 = 0;
 
 /// A refit that touches more leaves than this share of all nodes goes over all nodes: a path to the root is about
 /// this long, and a pass in order is cheaper per node.
@@ -43,17 +58,28 @@ pub struct SphereBvh {
     slots: SphereSlots,
     nodes: Heap<BvhNode>,
     leaf_spheres: Heap<LeafSphere>,
-    /// Where in `leaf_spheres` each slot's sphere is listed; of no meaning for a free slot.
-    places: Vec<u32>,
-    /// The leaf that lists each of `leaf_spheres`.
-    leaves: Vec<u32>,
-    /// Parent of each node; `NONE` for the root.
+    /// Parent of each node; `NONE` for the root and free nodes.
     parents: Vec<u32>,
-    /// Leaves whose spheres moved since the last `finish`, some perhaps more than once.
+    /// Levels below each node; 0 for free ones.
+    heights: Vec<u8>,
+    /// Where in `leaf_spheres` each slot's sphere is listed; `NONE` for a free slot.
+    places: Vec<u32>,
+    /// The leaf that lists each of `leaf_spheres`; `NONE` for free entries.
+    leaves: Vec<u32>,
+    /// First nodes of pairs not in use.
+    free_pairs: Vec<u32>,
+    /// First entries of blocks not in use.
+    free_blocks: Vec<u32>,
+    /// Blocks stand from this entry on; entries before it are as the build laid them.
+    first_block: u32,
+    /// Spheres that came or went since the tree was built.
+    edit_count: usize,
+    /// Slots of spheres that moved since the last `finish`, some perhaps more than once. Until then their leaves
+    /// list them where they were, so that leaves and boxes agree.
     touched: Vec<u32>,
-    /// Spheres came or went since the last `finish`: the tree is not that of the spheres.
+    /// The next `finish` builds the tree anew, whatever it is now.
     is_stale: bool,
-    work: OctreeWork,
+    work: StructureWork,
 }
 
 impl SphereBvh {
@@ -64,7 +90,7 @@ impl SphereBvh {
     /// [`AccelError::TooManyPrimitives`].
     pub fn build(spheres: &[(u32, SphereRecord)], revision: u64) -> Result<Self, AccelError> {
         let mut bvh = Self { slots: SphereSlots::build(spheres, revision)?, ..Self::default() };
-        bvh.rebuild(revision)?;
+        bvh.build_tree(revision)?;
         Ok(bvh)
     }
 
@@ -74,7 +100,9 @@ impl SphereBvh {
     /// [`AccelError::SlotTaken`], [`AccelError::BadSphere`].
     pub fn insert(&mut self, slot: u32, sphere: SphereRecord, revision: u64) -> Result<(), AccelError> {
         self.slots.insert(slot, sphere, revision)?;
-        self.is_stale = true;
+        self.places.resize(self.slots.records().len(), NONE);
+        self.edit_count += 1;
+        self.is_stale = self.is_stale || self.is_worn() || !self.link(slot, revision);
         Ok(())
     }
 
@@ -84,7 +112,8 @@ impl SphereBvh {
     /// [`AccelError::SlotEmpty`].
     pub fn remove(&mut self, slot: u32, revision: u64) -> Result<(), AccelError> {
         self.slots.remove(slot, revision)?;
-        self.is_stale = true;
+        self.edit_count += 1;
+        self.is_stale = self.is_stale || self.is_worn() || !self.unlink(slot, revision);
         Ok(())
     }
 
@@ -94,8 +123,7 @@ impl SphereBvh {
     /// [`AccelError::SlotEmpty`], [`AccelError::BadSphere`].
     pub fn update(&mut self, slot: u32, center: Vec3, radius: f32, revision: u64) -> Result<(), AccelError> {
         if self.slots.update(slot, center, radius, revision)? && !self.is_stale {
-            let place = self.copy_to_leaf(slot, revision);
-            self.touched.push(self.leaves[place]);
+            self.touched.push(slot);
         }
         Ok(())
     }
@@ -106,7 +134,9 @@ impl SphereBvh {
     /// [`AccelError::SlotEmpty`].
     pub fn set_material(&mut self, slot: u32, material: u32, revision: u64) -> Result<(), AccelError> {
         if self.slots.set_material(slot, material, revision)? && !self.is_stale {
-            self.copy_to_leaf(slot, revision);
+            let place = self.places[slot as usize] as usize;
+            self.leaf_spheres.get_mut(place, revision).material = material;
+            self.work.spheres_touched += 1;
         }
         Ok(())
     }
@@ -116,24 +146,31 @@ impl SphereBvh {
     /// # Errors
     /// [`AccelError::TooManyPrimitives`].
     pub fn finish(&mut self, revision: u64) -> Result<(), AccelError> {
-        if self.is_stale {
-            return self.rebuild(revision);
-        }
         let touched = std::mem::take(&mut self.touched);
-        if touched.len() * NODES_PER_PATH > self.nodes.len() {
-            self.refit_all(revision);
-        } else {
-            touched.iter().for_each(|&leaf| self.refit_path(leaf, revision));
+        self.is_stale = self.is_stale || self.is_worn() || !self.follow_all(touched, revision);
+        if self.is_stale {
+            self.work.rebuilds += 1;
+            self.build_tree(revision)?;
         }
         Ok(())
     }
 
-    /// The nodes; clone the heap to publish them.
+    /// Takes in that spheres moved. False if that takes a rebuild.
+    fn follow_all(&mut self, slots: Vec<u32>, revision: u64) -> bool {
+        if slots.len() * NODES_PER_PATH > self.nodes.len() {
+            slots.into_iter().for_each(|slot| self.copy_to_leaf(slot, revision));
+            self.refit_all(revision);
+            return true;
+        }
+        slots.into_iter().all(|slot| self.follow(slot, revision))
+    }
+
+    /// The nodes, free ones among them; clone the heap to publish them.
     pub fn nodes(&self) -> &Heap<BvhNode> {
         &self.nodes
     }
 
-    /// The spheres in leaf order; clone the heap to publish them.
+    /// The spheres as the leaves list them, free entries among them; clone the heap to publish them.
     pub fn leaf_spheres(&self) -> &Heap<LeafSphere> {
         &self.leaf_spheres
     }
@@ -158,101 +195,53 @@ impl SphereBvh {
         self.nodes.as_slice().first().map_or_else(Aabb::empty, bounds)
     }
 
-    /// What has been done so far: nodes fitted or built, spheres copied.
-    pub fn work(&self) -> OctreeWork {
+    /// Deepest level of a node below the root.
+    pub fn depth(&self) -> u32 {
+        self.heights.first().copied().map_or(0, u32::from)
+    }
+
+    /// What has been done so far: nodes read, fitted or built, spheres copied, pairs taken and given back.
+    pub fn work(&self) -> StructureWork {
         self.work
     }
 
-    /// Checks every invariant of the module's text.
-    ///
-    /// # Errors
-    /// [`AccelError::Broken`] with the first record at fault.
-    pub fn validate(&self) -> Result<(), AccelError> {
-        self.slots.validate()?;
-        let require = |holds, index, rule| AccelError::require(holds, "sphere bvh", index, rule);
-        require(!self.is_stale && self.touched.is_empty(), 0, "edits wait for `finish`")?;
-        let leaf_spheres = self.leaf_spheres.as_slice();
-        validate_tree(self.nodes.as_slice(), self.len() as usize, |index| {
-            leaf_spheres.get(index as usize).map(leaf_sphere_bounds)
-        })?;
-        require(leaf_spheres.len() == self.len() as usize, 0, "not every sphere is listed once")?;
-        for (slot, record) in self.slots.live() {
-            let place = self.places[slot as usize] as usize;
-            let is_listed = leaf_spheres.get(place) == Some(&LeafSphere::of(slot, record));
-            require(is_listed, place, "a leaf's sphere is not that of its slot")?;
-        }
-        require(self.parents == parents(self.nodes.as_slice()), 0, "the parents are not those of the nodes")?;
-        require(self.leaves == leaves(self.nodes.as_slice()), 0, "the leaves are not those of the nodes")
-    }
-
-    /// Builds the tree anew over the live spheres in order of their slots.
-    fn rebuild(&mut self, revision: u64) -> Result<(), AccelError> {
+    /// Builds the tree over the live spheres in order of their slots.
+    fn build_tree(&mut self, revision: u64) -> Result<(), AccelError> {
         let live: Vec<(u32, &SphereRecord)> = self.slots.live().collect();
         let boxes: Vec<Aabb<f32>> = live.iter().map(|(_, record)| sphere_bounds(record)).collect();
         let bvh = build_bvh(&boxes, &OPTIONS)?;
         let in_leaf = |&index: &u32| LeafSphere::of(live[index as usize].0, live[index as usize].1);
         let leaf_spheres: Vec<LeafSphere> = bvh.order.iter().map(in_leaf).collect();
-        self.places = vec![NONE; self.slots.records().len()];
+        let mut places = vec![NONE; self.slots.records().len()];
         for (place, sphere) in leaf_spheres.iter().enumerate() {
-            self.places[sphere.slot as usize] = place as u32;
+            places[sphere.slot as usize] = place as u32;
         }
-        self.work.nodes_touched += bvh.nodes.len() as u64;
-        self.work.spheres_touched += leaf_spheres.len() as u64;
-        self.leaves = leaves(&bvh.nodes);
-        self.parents = parents(&bvh.nodes);
-        self.nodes = Heap::from_records(bvh.nodes, revision);
-        self.leaf_spheres = Heap::from_records(leaf_spheres, revision);
-        self.touched.clear();
-        self.is_stale = false;
+        let mut work = self.work;
+        work.nodes_touched += bvh.nodes.len() as u64;
+        work.spheres_touched += leaf_spheres.len() as u64;
+        *self = Self {
+            slots: std::mem::take(&mut self.slots),
+            parents: parents(&bvh.nodes),
+            heights: heights(&bvh.nodes),
+            places,
+            leaves: leaves(&bvh.nodes),
+            first_block: leaf_spheres.len() as u32,
+            nodes: Heap::from_records(bvh.nodes, revision),
+            leaf_spheres: Heap::from_records(leaf_spheres, revision),
+            work,
+            ..Self::default()
+        };
         Ok(())
     }
 
-    /// Renews the copy of a sphere in its leaf and returns its place.
-    fn copy_to_leaf(&mut self, slot: u32, revision: u64) -> usize {
-        let place = self.places[slot as usize] as usize;
-        let record = &self.slots.records().as_slice()[slot as usize];
-        *self.leaf_spheres.get_mut(place, revision) = LeafSphere::of(slot, record);
-        self.work.spheres_touched += 1;
-        place
-    }
-
-    /// The box of a node from what is below it.
-    fn fitted(&self, nodes: &[BvhNode], node: usize) -> Aabb<f32> {
-        if nodes[node].is_leaf() {
-            let (first, count) = nodes[node].primitives();
-            let spheres = &self.leaf_spheres.as_slice()[first as usize..(first + count) as usize];
-            spheres[1..].iter().fold(leaf_sphere_bounds(&spheres[0]), |b, s| b.union(&leaf_sphere_bounds(s)))
-        } else {
-            let first = nodes[node].first_child() as usize;
-            bounds(&nodes[first]).union(&bounds(&nodes[first + 1]))
+    /// Renews the copy of a slot's sphere in its leaf, if there is one.
+    fn copy_to_leaf(&mut self, slot: u32, revision: u64) {
+        let place = self.places[slot as usize];
+        if place != NONE {
+            let record = &self.slots.records().as_slice()[slot as usize];
+            *self.leaf_spheres.get_mut(place as usize, revision) = LeafSphere::of(slot, record);
+            self.work.spheres_touched += 1;
         }
-    }
-
-    /// Fits a leaf and what is above it, as far up as boxes change.
-    fn refit_path(&mut self, leaf: u32, revision: u64) {
-        let mut node = leaf;
-        while node != NONE {
-            let index = node as usize;
-            let fitted = self.fitted(self.nodes.as_slice(), index);
-            self.work.nodes_touched += 1;
-            if fitted == bounds(&self.nodes.as_slice()[index]) {
-                break;
-            }
-            let record = self.nodes.get_mut(index, revision);
-            (record.lo, record.hi) = (fitted.lo.into(), fitted.hi.into());
-            node = self.parents[index];
-        }
-    }
-
-    /// Fits every node, children before their parents.
-    fn refit_all(&mut self, revision: u64) {
-        let mut nodes = self.nodes.as_slice().to_vec();
-        for index in (0..nodes.len()).rev() {
-            let fitted = self.fitted(&nodes, index);
-            (nodes[index].lo, nodes[index].hi) = (fitted.lo.into(), fitted.hi.into());
-        }
-        self.work.nodes_touched += nodes.len() as u64;
-        self.nodes.write(0, &nodes, revision);
     }
 }
 
@@ -264,7 +253,7 @@ fn leaf_sphere_bounds(sphere: &LeafSphere) -> Aabb<f32> {
     luxel_geom::sphere::bounds(Vec3::from(sphere.center), sphere.radius)
 }
 
-/// The parent of each node.
+/// The parent of each node of a tree as built.
 fn parents(nodes: &[BvhNode]) -> Vec<u32> {
     let mut parents = vec![NONE; nodes.len()];
     for (index, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
@@ -272,6 +261,16 @@ fn parents(nodes: &[BvhNode]) -> Vec<u32> {
         parents[first..first + 2].fill(index as u32);
     }
     parents
+}
+
+/// The levels below each node of a tree as built, children behind their parents.
+fn heights(nodes: &[BvhNode]) -> Vec<u8> {
+    let mut heights = vec![0u8; nodes.len()];
+    for (index, node) in nodes.iter().enumerate().rev().filter(|(_, node)| !node.is_leaf()) {
+        let first = node.first_child() as usize;
+        heights[index] = 1 + heights[first].max(heights[first + 1]);
+    }
+    heights
 }
 
 /// The leaf of each place in the leaf order.

@@ -6,9 +6,9 @@ use glam::Vec3;
 use luxel_flat::{BvhNode, Heap, LeafSphere, MAX_OCTREE_DEPTH, OctreeNode, SphereAccel, SphereRecord};
 use luxel_geom::Aabb;
 
-use crate::slots::SphereSlots;
+use crate::sphere_list::SphereList;
 use crate::{
-    AccelError, CellOctree, OctreeOptions, OctreeWork, RootCell, SphereBvh, SphereOctree, depth, octree_depth,
+    AccelError, CellOctree, OctreeOptions, RootCell, SphereBvh, SphereOctree, StructureWork, octree_depth,
 };
 
 /// Which structure, and when its nodes are divided.
@@ -62,20 +62,10 @@ pub struct SphereStructure {
 
 #[derive(Clone, Debug)]
 enum Inner {
-    Naive(Naive),
+    Naive(SphereList),
     Octree(SphereOctree),
     Cells(CellOctree),
     Bvh(SphereBvh),
-}
-
-/// Spheres without nodes.
-#[derive(Clone, Debug)]
-struct Naive {
-    slots: SphereSlots,
-    bounds: Aabb<f32>,
-    /// Spheres changed since the bounds were taken.
-    is_stale: bool,
-    work: OctreeWork,
 }
 
 /// What to show of heaps that the structure does not have.
@@ -84,24 +74,6 @@ struct Unused {
     octree_nodes: Heap<OctreeNode>,
     sphere_nodes: Heap<BvhNode>,
     leaf_spheres: Heap<LeafSphere>,
-}
-
-impl Naive {
-    fn build(spheres: &[(u32, SphereRecord)], revision: u64) -> Result<Self, AccelError> {
-        let slots = SphereSlots::build(spheres, revision)?;
-        Ok(Self { bounds: slots.bounds(), slots, is_stale: false, work: OctreeWork::default() })
-    }
-
-    fn note_edit(&mut self, changes: bool) {
-        self.is_stale |= changes;
-        self.work.spheres_touched += u64::from(changes);
-    }
-
-    fn finish(&mut self) {
-        if std::mem::take(&mut self.is_stale) {
-            self.bounds = self.slots.bounds();
-        }
-    }
 }
 
 impl Default for SphereStructure {
@@ -128,7 +100,7 @@ impl SphereStructure {
     ) -> Result<Self, AccelError> {
         let octree = options.octree();
         let inner = match options.accel {
-            SphereAccel::Naive => Inner::Naive(Naive::build(spheres, revision)?),
+            SphereAccel::Naive => Inner::Naive(SphereList::build(spheres, revision)?),
             SphereAccel::Octree => Inner::Octree(SphereOctree::build(root, octree, spheres, revision)?),
             SphereAccel::OctreeBase | SphereAccel::OctreeSeed => {
                 Inner::Cells(CellOctree::build(octree, spheres, revision)?)
@@ -144,11 +116,7 @@ impl SphereStructure {
     /// [`AccelError::SlotTaken`], [`AccelError::BadSphere`]; then nothing changed.
     pub fn insert(&mut self, slot: u32, sphere: SphereRecord, revision: u64) -> Result<(), AccelError> {
         match &mut self.inner {
-            Inner::Naive(naive) => {
-                naive.slots.insert(slot, sphere, revision)?;
-                naive.note_edit(true);
-                Ok(())
-            }
+            Inner::Naive(list) => list.insert(slot, sphere, revision),
             Inner::Octree(octree) => octree.insert(slot, sphere, revision),
             Inner::Cells(octree) => octree.insert(slot, sphere, revision),
             Inner::Bvh(bvh) => bvh.insert(slot, sphere, revision),
@@ -161,11 +129,7 @@ impl SphereStructure {
     /// [`AccelError::SlotEmpty`].
     pub fn remove(&mut self, slot: u32, revision: u64) -> Result<(), AccelError> {
         match &mut self.inner {
-            Inner::Naive(naive) => {
-                naive.slots.remove(slot, revision)?;
-                naive.note_edit(true);
-                Ok(())
-            }
+            Inner::Naive(list) => list.remove(slot, revision),
             Inner::Octree(octree) => octree.remove(slot, revision),
             Inner::Cells(octree) => octree.remove(slot, revision),
             Inner::Bvh(bvh) => bvh.remove(slot, revision),
@@ -178,11 +142,7 @@ impl SphereStructure {
     /// [`AccelError::SlotEmpty`], [`AccelError::BadSphere`]; then nothing changed.
     pub fn update(&mut self, slot: u32, center: Vec3, radius: f32, revision: u64) -> Result<(), AccelError> {
         match &mut self.inner {
-            Inner::Naive(naive) => {
-                let changes = naive.slots.update(slot, center, radius, revision)?;
-                naive.note_edit(changes);
-                Ok(())
-            }
+            Inner::Naive(list) => list.update(slot, center, radius, revision),
             Inner::Octree(octree) => octree.update(slot, center, radius, revision),
             Inner::Cells(octree) => octree.update(slot, center, radius, revision),
             Inner::Bvh(bvh) => bvh.update(slot, center, radius, revision),
@@ -195,7 +155,7 @@ impl SphereStructure {
     /// [`AccelError::SlotEmpty`].
     pub fn set_material(&mut self, slot: u32, material: u32, revision: u64) -> Result<(), AccelError> {
         match &mut self.inner {
-            Inner::Naive(naive) => naive.slots.set_material(slot, material, revision).map(|_| ()),
+            Inner::Naive(list) => list.set_material(slot, material, revision),
             Inner::Octree(octree) => octree.set_material(slot, material, revision),
             Inner::Cells(octree) => octree.set_material(slot, material, revision),
             Inner::Bvh(bvh) => bvh.set_material(slot, material, revision),
@@ -208,7 +168,7 @@ impl SphereStructure {
     /// [`AccelError::TooManyPrimitives`].
     pub fn finish(&mut self, revision: u64) -> Result<(), AccelError> {
         match &mut self.inner {
-            Inner::Naive(naive) => naive.finish(),
+            Inner::Naive(list) => list.finish(),
             Inner::Octree(_) => {}
             Inner::Cells(octree) => octree.finish(revision),
             Inner::Bvh(bvh) => bvh.finish(revision)?,
@@ -229,7 +189,7 @@ impl SphereStructure {
     /// The spheres by slot.
     pub fn spheres(&self) -> &Heap<SphereRecord> {
         match &self.inner {
-            Inner::Naive(naive) => naive.slots.records(),
+            Inner::Naive(list) => list.spheres(),
             Inner::Octree(octree) => octree.spheres(),
             Inner::Cells(octree) => octree.spheres(),
             Inner::Bvh(bvh) => bvh.spheres(),
@@ -274,7 +234,7 @@ impl SphereStructure {
     /// Number of spheres.
     pub fn len(&self) -> u32 {
         match &self.inner {
-            Inner::Naive(naive) => naive.slots.len(),
+            Inner::Naive(list) => list.len(),
             Inner::Octree(octree) => octree.len(),
             Inner::Cells(octree) => octree.len(),
             Inner::Bvh(bvh) => bvh.len(),
@@ -289,7 +249,7 @@ impl SphereStructure {
     /// Union of the spheres' boxes as of the last `finish`: a function of the content alone. Empty without spheres.
     pub fn bounds(&self) -> Aabb<f32> {
         match &self.inner {
-            Inner::Naive(naive) => naive.bounds,
+            Inner::Naive(list) => list.bounds(),
             Inner::Octree(octree) => octree.bounds(),
             Inner::Cells(octree) => octree.bounds(),
             Inner::Bvh(bvh) => bvh.bounds(),
@@ -302,14 +262,14 @@ impl SphereStructure {
             Inner::Naive(_) => 0,
             Inner::Octree(octree) => octree_depth(octree.nodes().as_slice()),
             Inner::Cells(octree) => octree.depth(),
-            Inner::Bvh(bvh) => depth(bvh.nodes().as_slice()),
+            Inner::Bvh(bvh) => bvh.depth(),
         }
     }
 
     /// What has been done since the structure was made.
-    pub fn work(&self) -> OctreeWork {
+    pub fn work(&self) -> StructureWork {
         match &self.inner {
-            Inner::Naive(naive) => naive.work,
+            Inner::Naive(list) => list.work(),
             Inner::Octree(octree) => octree.work(),
             Inner::Cells(octree) => octree.work(),
             Inner::Bvh(bvh) => bvh.work(),
@@ -327,11 +287,7 @@ impl SphereStructure {
     /// [`AccelError::Broken`] with the first record at fault.
     pub fn validate(&self) -> Result<(), AccelError> {
         match &self.inner {
-            Inner::Naive(naive) => {
-                naive.slots.validate()?;
-                let is_finished = naive.bounds == naive.slots.bounds();
-                AccelError::require(is_finished, "spheres", 0, "the bounds are not the union of the boxes")
-            }
+            Inner::Naive(list) => list.validate(),
             Inner::Octree(octree) => octree.validate(),
             Inner::Cells(octree) => octree.validate(),
             Inner::Bvh(bvh) => bvh.validate(),

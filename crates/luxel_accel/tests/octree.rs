@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use luxel_accel::{AccelError, OctreeOptions, OctreeWork, RootCell, SphereOctree, octree_depth};
+use luxel_accel::{AccelError, OctreeOptions, RootCell, SphereOctree, StructureWork, octree_depth};
 use luxel_flat::{NONE, SphereRecord};
 use luxel_geom::{Aabb, sphere};
 use luxel_testkit::{Random, spheres};
@@ -47,12 +47,13 @@ fn depth(octree: &SphereOctree) -> usize {
 }
 
 /// What was done between two readings.
-fn difference(before: OctreeWork, after: OctreeWork) -> OctreeWork {
-    OctreeWork {
+fn difference(before: StructureWork, after: StructureWork) -> StructureWork {
+    StructureWork {
         nodes_touched: after.nodes_touched - before.nodes_touched,
         spheres_touched: after.spheres_touched - before.spheres_touched,
         blocks_allocated: after.blocks_allocated - before.blocks_allocated,
         blocks_freed: after.blocks_freed - before.blocks_freed,
+        rebuilds: after.rebuilds - before.rebuilds,
     }
 }
 

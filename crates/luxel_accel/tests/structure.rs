@@ -122,6 +122,22 @@ fn what_changes_nothing_writes_nothing() {
 }
 
 #[test]
+fn only_octrees_of_cells_are_built_anew_for_an_edit() {
+    for options in all_options() {
+        let all = spheres::cloud(5, 200, 0.9, [0.01, 0.02]);
+        let mut structure = build(options, &all);
+        assert_eq!(structure.work().rebuilds, 0);
+        structure.remove(9, 2).unwrap();
+        structure.insert(200, all[9], 2).unwrap();
+        structure.update(8, Vec3::ZERO, 0.3, 2).unwrap();
+        structure.finish(2).unwrap();
+        structure.validate().unwrap();
+        let is_of_cells = matches!(options.accel, SphereAccel::OctreeBase | SphereAccel::OctreeSeed);
+        assert_eq!(structure.work().rebuilds, u64::from(is_of_cells), "{options:?}");
+    }
+}
+
+#[test]
 fn a_material_reaches_every_copy() {
     for options in all_options() {
         let mut structure = build(options, &spheres::cloud(5, 200, 0.9, [0.1, 0.2]));

@@ -174,10 +174,12 @@ impl Cloud {
 
     /// Takes in a batch of edits; what they deferred is done at its end.
     fn apply_all(&mut self, edits: &[Edit], journal: &mut Journal) -> Result<(), AccelError> {
-        let before = self.structure.work().nodes_touched;
+        let before = self.structure.work();
         edits.iter().try_for_each(|edit| self.apply(edit, journal))?;
         self.structure.finish(journal.revision())?;
-        journal.counters.sphere_nodes_touched += self.structure.work().nodes_touched - before;
+        let work = self.structure.work();
+        journal.counters.sphere_nodes_touched += work.nodes_touched - before.nodes_touched;
+        journal.counters.sphere_rebuilds += work.rebuilds - before.rebuilds;
         Ok(())
     }
 

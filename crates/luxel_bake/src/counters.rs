@@ -44,7 +44,8 @@ counters! {
     sphere_removes,
     /// Spheres moved, resized or given another material slot inside it.
     sphere_updates,
-    /// Structures built anew from all spheres, because the cloud's anchor, root cell, options or generation changed.
+    /// Structures built anew from all spheres, because the cloud's anchor, root cell, options or generation changed,
+    /// or edits wore them out.
     sphere_rebuilds,
     /// Nodes of the structure that were written.
     sphere_nodes_touched,

@@ -3,7 +3,9 @@
 //! Both children of a node are tested at once. The farther one waits on a short stack with its entry and is passed
 //! over if a hit was found before it. The stack is a small array, so that it costs next to nothing to have; should
 //! it be full, the farther subtree is walked at once by its skip pointers, which needs no stack: no depth can
-//! overflow, and only time depends on the order. A damaged tree neither panics nor loops forever.
+//! overflow, and only time depends on the order. A damaged tree neither panics nor loops forever: in a sound one every
+//! node has one parent and its box is tested at most once, so a walk that would test more boxes than there are nodes
+//! runs in a circle, and ends.
 use luxel_flat::{BvhNode, LEAF_COUNT_SHIFT};
 use luxel_geom::{PairRay, Real, SlabRay};
 
@@ -15,7 +17,7 @@ const STACK_SIZE: usize = 32;
 /// What a walk did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Walk {
-    /// Nodes whose box was tested.
+    /// Nodes whose box was tested, the root with them.
     pub node_count: u64,
     /// False if the tree is damaged.
     pub is_sound: bool,
@@ -49,7 +51,7 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
     #[inline(always)]
     fn run(mut self) -> Walk {
         let pair_ray = PairRay::new(&self.ray);
-        let mut next = self.nodes.first().map(|root| root.leaf);
+        let mut next = self.enter_root();
         while let Some(content) = next {
             next = if content >> LEAF_COUNT_SHIFT == 0 {
                 self.enter(&pair_ray, content)
@@ -62,14 +64,39 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
         self.walk
     }
 
+    /// Tests the root: `BvhNode::leaf` of it, if the ray enters it.
+    #[inline(always)]
+    fn enter_root(&mut self) -> Option<u32> {
+        let root = self.nodes.first()?;
+        self.walk.node_count += 1;
+        self.is_entered(root).then_some(root.leaf)
+    }
+
+    #[inline(always)]
+    fn is_entered(&self, node: &BvhNode) -> bool {
+        node_box(node).interval(&self.ray).overlaps(self.ray.t_min, self.ray.t_max)
+    }
+
+    /// True if more boxes may be tested; else the tree is damaged.
+    #[inline(always)]
+    fn may_go_on(&self) -> bool {
+        self.walk.node_count < self.nodes.len() as u64
+    }
+
+    /// Ends the walk of a damaged tree.
+    #[cold]
+    fn give_up(&mut self) {
+        self.walk.is_sound = false;
+        self.waiting = 0;
+    }
+
     /// Tests the children of an inner node: the one to go on with, if any.
     #[inline(always)]
     fn enter(&mut self, pair_ray: &PairRay<R>, first_child: u32) -> Option<u32> {
         let first = first_child as usize;
         let pair = self.nodes.get(first..first + 2);
-        let Some([a, b]) = pair.filter(|_| self.walk.node_count <= self.nodes.len() as u64) else {
-            self.walk.is_sound = false;
-            self.waiting = 0;
+        let Some([a, b]) = pair.filter(|_| self.may_go_on()) else {
+            self.give_up();
             return None;
         };
         self.walk.node_count += 2;
@@ -120,25 +147,25 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
         self.ray.t_max = (self.visit_leaf)(first, count);
     }
 
-    /// Walks a subtree without the stack.
+    /// Walks the subtree of a node whose box was tested, without the stack.
     #[cold]
     fn walk_by_skips(&mut self, root: usize) {
-        let end = self.nodes[root].skip as usize;
-        let mut index = root;
+        let BvhNode { leaf, skip: end, .. } = self.nodes[root];
+        if self.nodes[root].is_leaf() {
+            return self.visit(leaf);
+        }
+        let mut index = leaf;
         while index != end {
-            let in_tree = self.walk.node_count <= self.nodes.len() as u64;
-            let Some(node) = self.nodes.get(index).filter(|_| in_tree) else {
-                self.walk.is_sound = false;
-                self.waiting = 0;
-                return;
+            let Some(node) = self.nodes.get(index as usize).filter(|_| self.may_go_on()) else {
+                return self.give_up();
             };
             self.walk.node_count += 1;
-            index = node.skip as usize;
-            if node_box(node).interval(&self.ray).overlaps(self.ray.t_min, self.ray.t_max) {
+            index = node.skip;
+            if self.is_entered(node) {
                 if node.is_leaf() {
                     self.visit(node.leaf);
                 } else {
-                    index = node.first_child() as usize;
+                    index = node.first_child();
                 }
             }
         }

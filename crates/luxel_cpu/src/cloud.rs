@@ -1,7 +1,9 @@
 //! Closest hit in the sphere cloud, by the structure that the scene has over it.
 //!
-//! Every structure but [`SphereAccel::OctreeSeed`] gives the hit that [`SphereAccel::Naive`] gives, bit for bit. A
-//! damaged one gives some hit or none: it neither panics nor loops forever.
+//! Every structure but [`SphereAccel::OctreeSeed`] gives the hit that [`SphereAccel::Naive`] gives, bit for bit; but
+//! [`SphereAccel::OctreeBase`] may take a ray that grazes a silhouette for a hit or a miss otherwise, if it starts
+//! farther than ten edges of the root away (`luxel_accel::CellOctree`). A damaged one gives some hit or none: it
+//! neither panics nor loops forever.
 mod bvh;
 mod cells;
 mod naive;

@@ -1,7 +1,8 @@
 //! Closest hit in the scene: the TLAS by skip pointers.
 //!
 //! No stack, so no depth can overflow one: a missed node is left by its `skip`, everything else is visited in
-//! depth-first order. A node is passed over only if its entry lies beyond the best hit so far.
+//! depth-first order. A node is passed over only if its entry lies beyond the best hit so far. In a sound tree a walk
+//! meets no node twice, so one that goes on after as many steps as there are nodes runs in a circle, and ends.
 use luxel_flat::{BvhNode, Counter, Counters, FlatScene};
 use luxel_geom::{Aabb, Ray, Real, SlabRay, Vector};
 
@@ -20,9 +21,9 @@ pub fn intersect<R: Real>(
     let slab_ray = SlabRay::new(ray);
     let nodes = scene.tlas();
     let mut best: Option<Hit<R>> = None;
-    let mut index = 0;
-    while let Some(node) = nodes.get(index) {
-        counters[Counter::TlasNodes] += 1;
+    let (mut index, mut node_count) = (0, 0);
+    while let Some(node) = nodes.get(index).filter(|_| node_count < nodes.len()) {
+        node_count += 1;
         let limit = best.map_or(ray.t_max, |hit| hit.on.t);
         if !node_box(node).interval(&slab_ray).overlaps(ray.t_min, limit) {
             index = node.skip as usize;
@@ -37,6 +38,8 @@ pub fn intersect<R: Real>(
         best = hit.filter(|hit| hit.precedes(&best)).or(best);
         index = node.skip as usize;
     }
+    counters[Counter::TlasNodes] += node_count as u64;
+    counters[Counter::TraversalCaps] += u64::from(index < nodes.len());
     best
 }
 

@@ -228,9 +228,10 @@ fn s06_between_two_mirrors() {
         let path = &paths[0];
         assert!(paths.iter().all(|other| other == path));
         assert!(path.windows(2).all(|pair| pair[0].0 != pair[1].0), "a mirror meets itself");
-        assert!(path.len() <= exact.len() + 1 && path.len() + 1 >= exact.len().min(5), "{path:?} {exact:?}");
-        for ((a, p), (b, q)) in path.iter().zip(&exact).take(5) {
-            assert!(a == b && (*p - *q).length() < 1e-4 * f64::from(radius), "{p} {q}");
+        assert_eq!(path.len(), exact.len(), "{path:?} {exact:?}");
+        // The mirrors bulge towards each other, so each reflection adds to a ray's slant, and rounding grows.
+        for ((a, p), (b, q)) in path.iter().zip(&exact) {
+            assert!(a == b && (*p - *q).length() < 1e-5 * f64::from(radius), "{p} {q}");
         }
     }
 }

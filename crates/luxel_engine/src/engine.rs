@@ -69,6 +69,12 @@ impl Engine {
         baked.map_err(|source| EngineError::Bake { scene: self.path.display().to_string(), source })
     }
 
+    /// Counts rays that were traced in the scene that was baked last. What they cost is what the structure over the
+    /// spheres is kept up by; where nobody says, each baked scene is taken to be traced with one sample per pixel.
+    pub fn note_traced(&mut self, rays: u64) {
+        self.sphere_keeper.note_traced(rays);
+    }
+
     /// The file that the scene came from.
     pub fn path(&self) -> &Path {
         &self.path

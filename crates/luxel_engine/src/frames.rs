@@ -122,6 +122,7 @@ impl FrameStage {
         let total = self.chosen.tracer.stats().counters;
         let counters = difference(&total, &self.counters);
         self.counters = total;
+        self.engine.note_traced(counters.rays());
         Ok(Frame { secs, counters })
     }
 

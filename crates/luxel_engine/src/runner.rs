@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use luxel_film::tracer::{Backend, BackendFacts, TraceError, TraceRequest, TraceStats, Tracer};
 use luxel_film::{Film, ImageError, StopRule, StopState};
-use luxel_flat::{Feature, FlatScene};
+use luxel_flat::{Counter, Feature, FlatScene};
 
 use crate::backend::{self, ChosenTracer};
 use crate::{Engine, EngineError, RenderJob};
@@ -81,10 +81,12 @@ impl Engine {
     /// # Errors
     /// When settings are out of range, the scene cannot be baked, or no backend can trace it.
     pub fn render(&mut self, job: &RenderJob, observer: &mut Observer<'_>) -> Result<Rendered, EngineError> {
-        self.run(job, observer)?.on(job.backend.open()?)
+        let run = self.run(job, observer)?;
+        self.finish(run, job.backend.open()?)
     }
 
-    /// Renders a job on a given tracer. If its device fails, the CPU takes the same job from the start.
+    /// Renders a job on a given tracer. If its device fails, or cuts searches short, the CPU takes the same job from
+    /// the start.
     ///
     /// # Errors
     /// As [`Engine::render`].
@@ -94,7 +96,14 @@ impl Engine {
         job: &RenderJob,
         observer: &mut Observer<'_>,
     ) -> Result<Rendered, EngineError> {
-        self.run(job, observer)?.on(chosen)
+        let run = self.run(job, observer)?;
+        self.finish(run, chosen)
+    }
+
+    fn finish(&mut self, run: Run<'_, '_>, chosen: ChosenTracer) -> Result<Rendered, EngineError> {
+        let rendered = run.on(chosen)?;
+        self.note_traced(rendered.stats.counters.rays());
+        Ok(rendered)
     }
 
     /// Checks and bakes: whatever is wrong with the input shows before a device is opened.
@@ -167,6 +176,7 @@ impl Run<'_, '_> {
         let mut next_estimate_secs = 0.0;
         loop {
             let progress = tracer.advance(REPORT_SECS, limit)?;
+            check_searches(tracer)?;
             let secs = start.elapsed().as_secs_f64();
             if by_error && secs >= next_estimate_secs {
                 estimate = Some(ImageError::of(&tracer.film()?, self.white));
@@ -200,6 +210,16 @@ impl Run<'_, '_> {
         let mut rendered = self.drive(chosen).map_err(|(_, error)| error)?;
         rendered.notices.push(notice);
         Ok(rendered)
+    }
+}
+
+/// Fails if a device cut searches short: some of its pixels are wrong, and nobody knows which. The CPU has no such
+/// limit; there it means damaged structures, which another backend would not mend ([`Rendered::summary`] tells).
+fn check_searches(tracer: &dyn Tracer) -> Result<(), TraceError> {
+    let cut = tracer.stats().counters[Counter::TraversalCaps];
+    match tracer.facts().backend {
+        Backend::Gpu if cut > 0 => Err(TraceError::CutShort(cut)),
+        _ => Ok(()),
     }
 }
 

@@ -1,8 +1,9 @@
 //! Which structure a scene's spheres get when the scene leaves the choice open: the cheapest by measurement.
 //!
 //! The costs are those of [`luxel_cpu::cloud_cost`]: work along fixed rays, counted and weighed, not timed, so that a
-//! scene gets the same structure on every machine. A measurement costs about as much as a build; it is made again only when the
-//! number of spheres has changed by a factor of two, or the settings of the cloud have.
+//! scene gets the same structure on every machine. A choice costs a build of every candidate; it is made again only when
+//! the number of spheres has changed by a factor of two, or the settings of the cloud have.
+use luxel_cpu::cloud_cost::CloudCost;
 use luxel_flat::SphereAccel;
 use luxel_scene::SphereCloud;
 
@@ -13,8 +14,7 @@ pub(crate) const NAIVE_MOST: u64 = 1_000;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Measured {
     pub(crate) accel: SphereAccel,
-    /// Cost per ray in the weights of [`luxel_cpu::cloud_cost`]: about nanoseconds.
-    pub(crate) cost: f64,
+    pub(crate) cost: CloudCost,
 }
 
 /// What a choice was made for.
@@ -42,27 +42,36 @@ pub(crate) fn candidates(spheres: u64) -> &'static [SphereAccel] {
     }
 }
 
+/// From the cheapest to the dearest; of equals the simplest first.
+fn by_cost(measured: &[Measured]) -> Vec<Measured> {
+    let mut sorted = measured.to_vec();
+    sorted.sort_by(|a, b| {
+        a.cost.cost_per_ray.total_cmp(&b.cost.cost_per_ray).then((a.accel as u32).cmp(&(b.accel as u32)))
+    });
+    sorted
+}
+
 /// The cheapest; of equals the simplest.
 pub(crate) fn cheapest(measured: &[Measured]) -> Option<SphereAccel> {
-    let key = |m: &&Measured| (m.cost, m.accel as u32);
-    let best = measured.iter().min_by(|a, b| {
-        let (a, b) = (key(a), key(b));
-        a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
-    });
-    best.map(|measured| measured.accel)
+    by_cost(measured).first().map(|best| best.accel)
 }
 
 /// Why the cheapest was taken, as the end of a sentence that begins with "because".
-pub(crate) fn because(measured: &[Measured], spheres: u64) -> String {
-    let mut by_cost = measured.to_vec();
-    by_cost.sort_by(|a, b| a.cost.total_cmp(&b.cost).then((a.accel as u32).cmp(&(b.accel as u32))));
-    let Some((best, others)) = by_cost.split_first() else {
+pub(crate) fn because(measured: &[Measured]) -> String {
+    let sorted = by_cost(measured);
+    let Some((best, others)) = sorted.split_first() else {
         return "the scene has no spheres".to_owned();
     };
-    let spheres = if spheres == 1 { "1 sphere".to_owned() } else { format!("{spheres} spheres") };
-    let others: Vec<String> =
-        others.iter().map(|m| format!("{:.1} with {}", m.cost, m.accel.name())).collect();
-    format!("a ray among {spheres} costs about {:.1} ns with it, {}", best.cost, others.join(", "))
+    let CloudCost { nodes_per_ray: nodes, tests_per_ray: tests, .. } = best.cost;
+    let other = |m: &Measured| {
+        let CloudCost { nodes_per_ray, tests_per_ray, .. } = m.cost;
+        format!("{nodes_per_ray:.1} and {tests_per_ray:.1} ({})", m.accel.name())
+    };
+    let others = others.iter().map(other).collect::<Vec<_>>().join(", ");
+    format!(
+        "it is estimated to do the least work per ray, counted along sample rays: {nodes:.1} node and {tests:.1} sphere \
+         tests, against {others}"
+    )
 }
 
 #[cfg(test)]
@@ -70,7 +79,8 @@ mod tests {
     use super::*;
 
     fn measured(costs: &[(SphereAccel, f64)]) -> Vec<Measured> {
-        costs.iter().map(|(accel, cost)| Measured { accel: *accel, cost: *cost }).collect()
+        let cost_of = |cost| CloudCost { cost_per_ray: cost, ..CloudCost::default() };
+        costs.iter().map(|(accel, cost)| Measured { accel: *accel, cost: cost_of(*cost) }).collect()
     }
 
     #[test]
@@ -84,13 +94,21 @@ mod tests {
 
     #[test]
     fn the_reason_holds_every_number() {
-        let measured =
-            measured(&[(SphereAccel::Octree, 31.26), (SphereAccel::Naive, 100.0), (SphereAccel::Bvh, 28.0)]);
+        let counted = |accel, nodes_per_ray: f64, tests_per_ray: f64| {
+            let cost_per_ray = 8.0 * (nodes_per_ray + tests_per_ray);
+            Measured { accel, cost: CloudCost { rays: 9, nodes_per_ray, tests_per_ray, cost_per_ray } }
+        };
+        let measured = [
+            counted(SphereAccel::Octree, 30.06, 9.9),
+            counted(SphereAccel::Naive, 0.0, 100.0),
+            counted(SphereAccel::Bvh, 12.3, 5.6),
+        ];
         assert_eq!(
-            because(&measured, 100),
-            "a ray among 100 spheres costs about 28.0 ns with it, 31.3 with octree, 100.0 with naive"
+            because(&measured),
+            "it is estimated to do the least work per ray, counted along sample rays: 12.3 node and 5.6 sphere tests, \
+             against 30.1 and 9.9 (octree), 0.0 and 100.0 (naive)"
         );
-        assert_eq!(because(&[], 0), "the scene has no spheres");
+        assert_eq!(because(&[]), "the scene has no spheres");
     }
 
     #[test]

@@ -157,10 +157,10 @@ fn doubts(counters: &Counters) -> Vec<String> {
     let (caps, dropped) = (counters[Counter::TraversalCaps], counters[Counter::NonFiniteSamples]);
     let mut doubts = Vec::new();
     if caps > 0 {
-        // Software drivers end a thread after 65,535 turns of its loops.
+        // Only the CPU comes this far: what a GPU cuts short, the runner leaves to the CPU.
         doubts.push(format!(
-            "{caps} searches for the closest hit were cut short, so that the picture may be wrong; \
-             --backend cpu, or another --sphere-accel, has no such limit"
+            "{caps} searches for the closest hit found their structure damaged, so that the picture may be wrong; \
+             this should not happen: please report it, with the scene"
         ));
     }
     if dropped > 0 {
@@ -179,7 +179,8 @@ mod tests {
         counters[Counter::SphereTests] = 7;
         assert!(doubts(&counters).is_empty());
         counters[Counter::TraversalCaps] = 3;
-        assert!(doubts(&counters)[0].starts_with("3 searches"));
+        let doubt = &doubts(&counters)[0];
+        assert!(doubt.starts_with("3 searches") && doubt.contains("please report"), "{doubt}");
         counters[Counter::NonFiniteSamples] = 2;
         assert!(doubts(&counters)[1].starts_with("2 samples"));
     }

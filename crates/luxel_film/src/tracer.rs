@@ -136,6 +136,12 @@ pub enum TraceError {
     /// A buffer did not fit.
     #[error("out of memory: {0}")]
     OutOfMemory(String),
+    /// The device's driver ended so many loops before they were done.
+    #[error(
+        "its driver cut {0} searches for the closest hit short, as software drivers do where a ray has too much to \
+         test, and the picture would be wrong"
+    )]
+    CutShort(u64),
     /// Anything else.
     #[error("tracing failed: {0}")]
     Failed(String),

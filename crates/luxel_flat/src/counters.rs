@@ -28,17 +28,17 @@ counters! {
     CameraRays => "camera_rays",
     /// Rays from surfaces.
     ScatteredRays => "scattered_rays",
-    /// Nodes of the TLAS visited.
+    /// Nodes of the TLAS whose box was tested.
     TlasNodes => "tlas_nodes",
-    /// Nodes of mesh BVHs visited.
+    /// Nodes of mesh BVHs whose box was tested.
     BvhNodes => "bvh_nodes",
     /// Ray-triangle tests.
     TriangleTests => "triangle_tests",
-    /// Nodes of the structure over the spheres visited.
+    /// Nodes of the structure over the spheres whose box was tested.
     SphereNodes => "sphere_nodes",
     /// Ray-sphere tests.
     SphereTests => "sphere_tests",
-    /// Nodes of voxel octrees visited.
+    /// Nodes of voxel octrees whose box was tested.
     SvoNodes => "svo_nodes",
     /// Ray-voxel tests.
     VoxelTests => "voxel_tests",
@@ -60,7 +60,7 @@ counters! {
     AovWrites => "aov_writes",
     /// Samples dropped because they were not finite; 0 in a sound scene.
     NonFiniteSamples => "non_finite_samples",
-    /// Traversals stopped by their iteration cap; 0 unless a structure is damaged.
+    /// Loops of searches that ended before they were done; 0 unless a structure is damaged or a driver ends long loops.
     TraversalCaps => "traversal_caps",
 }
 

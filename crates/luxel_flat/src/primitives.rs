@@ -7,8 +7,8 @@ use crate::layout::shared_struct;
 shared_struct! {
     /// A node of a mesh BVH, of the TLAS or of a BVH over spheres.
     ///
-    /// The two children of an inner node stand side by side, behind their parent. Two walks work on these
-    /// records: without a stack (into `first_child` where the ray meets a box, else and after a leaf to `skip`),
+    /// The two children of an inner node stand side by side; in a tree as built, behind their parent. Nodes that a
+    /// tree does not use (`sphere_nodes` have some) are not linked to. Two walks work on these records: without a stack (into `first_child` where the ray meets a box, else and after a leaf to `skip`),
     /// and with a stack (the nearer child first).
     pub struct BvhNode {
         /// Corner of smallest coordinates, outset.

@@ -30,7 +30,9 @@ pub struct SphereAccelRow {
     pub name: &'static str,
     /// Name in WESL conditions.
     pub condition: &'static str,
-    /// False if it may miss the closest sphere.
+    /// False if it may miss the closest sphere. An exact one answers every ray as testing all spheres does, bit for bit;
+    /// but for `octree-base`, and rays from farther than ten edges of its root that graze a silhouette, where rounding
+    /// decides.
     pub is_exact: bool,
     /// Bindings that it reads.
     pub bindings: &'static [&'static str],

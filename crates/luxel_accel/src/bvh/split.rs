@@ -10,30 +10,30 @@ const MAX_SAH_DEPTH: u32 = 60;
 
 /// A primitive on its way into a leaf.
 #[derive(Clone, Copy)]
-pub(super) struct Primitive {
+pub(crate) struct Primitive {
     /// Lower corner of its box.
-    pub(super) lo: Vec3A,
+    pub(crate) lo: Vec3A,
     /// Upper corner of its box.
-    pub(super) hi: Vec3A,
+    pub(crate) hi: Vec3A,
     /// Position in the input.
-    pub(super) index: u32,
+    pub(crate) index: u32,
 }
 
 impl Primitive {
     /// The primitive at a position of the input.
-    pub(super) fn new(index: usize, bounds: Aabb<f32>) -> Self {
+    pub(crate) fn new(index: usize, bounds: Aabb<f32>) -> Self {
         Self { lo: bounds.lo.into(), hi: bounds.hi.into(), index: index as u32 }
     }
 
     /// Centre of the box, formed so that it does not overflow.
     #[inline]
-    pub(super) fn center(&self) -> Vec3A {
+    pub(crate) fn center(&self) -> Vec3A {
         self.lo * 0.5 + self.hi * 0.5
     }
 }
 
 /// Reorders the primitives and returns where the second half starts, or `None` for a leaf.
-pub(super) fn split(primitives: &mut [Primitive], depth: u32, options: &BvhOptions) -> Option<usize> {
+pub(crate) fn split(primitives: &mut [Primitive], depth: u32, options: &BvhOptions) -> Option<usize> {
     let count = primitives.len();
     let may_be_leaf = count <= options.max_leaf_size as usize;
     // No cut of so few would pay.

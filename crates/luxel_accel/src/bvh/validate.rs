@@ -6,7 +6,7 @@ use crate::AccelError;
 
 const STRUCTURE: &str = "bvh";
 
-/// Edges from the root to the deepest leaf; 0 for a tree of one node or none.
+/// Edges from the root to the deepest leaf of a tree as built; 0 for a tree of one node or none.
 pub fn depth(nodes: &[BvhNode]) -> u32 {
     let mut depths = vec![0; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {

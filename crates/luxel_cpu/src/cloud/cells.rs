@@ -1,7 +1,8 @@
 //! Closest hit in the octree of cells, as the report searches it (seed 1, II.D).
 //!
-//! *Base*: every leaf that the ray passes through, whatever was found before; of all hits the closest counts. Exact,
-//! because a sphere stands in every leaf that it reaches into. *Seed*: children in the order in which the ray meets
+//! *Base*: every leaf that the ray passes through, whatever was found before; of all hits the closest counts. Exact
+//! (from very far up to rounding, see `luxel_accel::CellOctree`), because a sphere stands in every leaf that it
+//! reaches into. *Seed*: children in the order in which the ray meets
 //! them, and the first leaf in which anything is hit ends the search. That hit may lie outside the leaf, with a
 //! closer one in a leaf not yet visited: the report's "occasional visual glitches", kept to be measured.
 //!
