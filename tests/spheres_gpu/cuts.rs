@@ -85,12 +85,14 @@ fn shells(count: u32) -> impl Iterator<Item = (u32, f32)> {
     (0..count).map(move |i| (i, 1.0 + 0.3 * i as f32 / count as f32))
 }
 
-/// Spheres around nearly one centre, and one far behind them.
+/// Spheres around nearly one centre, and far behind them the target, numbered `count`; it comes last in a list with
+/// others that are hit farther away.
 fn sphere_shells(count: u32) -> Vec<SphereRecord> {
     let mut random = Random::new(1);
     let mut all: Vec<_> =
         shells(count).map(|(id, radius)| spheres::sphere(random.point(0.01), radius, id)).collect();
-    all.push(spheres::sphere(Vec3::new(1.15, 1.15, 10.0), 1.0, count));
+    let behind = |i: u32| spheres::sphere(Vec3::new(1.15, 1.15, 10.0 + 0.01 * i as f32), 1.0, count + i);
+    all.extend((0..4).rev().map(behind));
     all
 }
 
@@ -99,9 +101,9 @@ fn in_naive() {
     let Some(gpu) = gpu_or_fail() else { return };
     let mut shooter = RayShooter::new(&gpu);
     assert_cuts_are_counted("naive", |length| {
-        let all = sphere_shells(62_000 + length);
+        let target = 62_000 + length;
+        let all = sphere_shells(target);
         let options = SphereOptions { accel: SphereAccel::Naive, ..SphereOptions::default() };
-        let target = all.len() as u32 - 1;
         let ray = through_corners(LENGTHS - 1);
         shoot(&mut shooter, &scene_with(options, &all, 1), ray, |hit| hit.primitive == target)
     });

@@ -18,6 +18,7 @@ use luxel_geom::Ray;
 use luxel_scene::{RenderSettings, SphereAccel, SphereCloud};
 
 use crate::output::Picture;
+use crate::runner::check_searches;
 use crate::{BackendChoice, ChosenTracer, Engine, EngineError};
 
 /// Under which settings frames are traced.
@@ -113,12 +114,13 @@ impl FrameStage {
     /// Traces one frame.
     ///
     /// # Errors
-    /// When the device fails.
+    /// When the device fails or cuts searches short.
     pub fn frame(&mut self) -> Result<Frame, EngineError> {
         self.samples += self.spp;
         let start = Instant::now();
         self.chosen.tracer.advance(f64::MAX, self.samples)?;
         let secs = start.elapsed().as_secs_f64();
+        check_searches(self.chosen.tracer.as_ref())?;
         let total = self.chosen.tracer.stats().counters;
         let counters = difference(&total, &self.counters);
         self.counters = total;

@@ -215,7 +215,7 @@ impl Run<'_, '_> {
 
 /// Fails if a device cut searches short: some of its pixels are wrong, and nobody knows which. The CPU has no such
 /// limit; there it means damaged structures, which another backend would not mend ([`Rendered::summary`] tells).
-fn check_searches(tracer: &dyn Tracer) -> Result<(), TraceError> {
+pub(crate) fn check_searches(tracer: &dyn Tracer) -> Result<(), TraceError> {
     let cut = tracer.stats().counters[Counter::TraversalCaps];
     match tracer.facts().backend {
         Backend::Gpu if cut > 0 => Err(TraceError::CutShort(cut)),
