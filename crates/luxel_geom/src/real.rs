@@ -59,8 +59,6 @@ pub trait Real:
     fn sin(self) -> Self;
     /// Cosine of an angle in radians.
     fn cos(self) -> Self;
-    /// Largest whole number not above.
-    fn floor(self) -> Self;
     /// True for numbers that are neither NaN nor infinite.
     fn is_finite(self) -> bool;
     /// The next number towards `+∞`.
@@ -222,10 +220,6 @@ macro_rules! impl_real {
             #[inline]
             fn cos(self) -> Self {
                 $real::cos(self)
-            }
-            #[inline]
-            fn floor(self) -> Self {
-                $real::floor(self)
             }
             #[inline]
             fn is_finite(self) -> bool {
