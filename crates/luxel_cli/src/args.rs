@@ -252,9 +252,10 @@ pub(crate) enum Study {
     ///
     /// Writes runs.jsonl (a line per run), runs.csv and octree.html to DIR. Each configuration is measured in up to 50
     /// frames within its time; the whole takes about an hour, with --quick less than two minutes on two cores.
-    /// A runs.jsonl of an earlier study in DIR becomes runs.previous.jsonl; a file of that name that is no octree
-    /// study is an error. Ctrl-C stops and writes the page with what there is; a second one ends the program at once,
-    /// and what was measured stays in runs.jsonl.part.
+    /// A runs.jsonl of an earlier study in DIR becomes runs.previous-1.jsonl, or the next number that is free; files of
+    /// these names that are of no octree study are an error. Ctrl-C stops and writes the page with what there is; a
+    /// second one ends the program at once, and what was measured stays in runs.jsonl.part, which the next study
+    /// keeps with a number as well.
     Octree(OctreeArgs),
 }
 

@@ -1,6 +1,7 @@
 //! What can stop a command, and the one line that tells it.
 use std::path::PathBuf;
 
+use clap::error::ErrorKind;
 use luxel_engine::output::OutputError;
 use luxel_engine::{EngineError, ExitCode};
 use luxel_study::StudyError;
@@ -66,9 +67,19 @@ pub(crate) fn tell_usage(error: &clap::Error) -> ExitCode {
         return ExitCode::Done;
     }
     let text = error.render().to_string();
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        print_line("a command is missing");
+        print_help(&text);
+        return ExitCode::BadInput;
+    }
     let what = text.strip_prefix("error: ").unwrap_or(&text).split("\n\n").next().unwrap_or_default();
     print_line(&format!("{}; see --help", one_line(what)));
     ExitCode::BadInput
+}
+
+#[expect(clippy::print_stderr, reason = "what goes with an error belongs on stderr")]
+fn print_help(text: &str) {
+    eprint!("\n{text}");
 }
 
 #[expect(clippy::print_stderr, reason = "errors belong on stderr")]

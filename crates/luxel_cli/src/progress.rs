@@ -1,6 +1,8 @@
-//! The progress bar of a render, on stderr when that is a terminal, and the notices beside it.
+//! The progress bar of a render or study, on stderr when that is a terminal, and the notices beside it. A study, which
+//! may take an hour, tells how far it is now and then where there is no terminal.
+use std::cell::Cell;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use luxel_engine::RenderProgress;
@@ -8,11 +10,15 @@ use luxel_study::octree::StudyProgress;
 
 /// Steps of the bar.
 const STEPS: u64 = 1000;
+/// How often a study tells how far it is where there is no terminal.
+const TELL_EVERY: Duration = Duration::from_secs(10);
 const TEMPLATE: &str = "{spinner} {prefix} {bar:30} {percent:>3} %  {msg}";
 
-/// Shows how far a render is; silent where nobody watches.
+/// Shows how far a render or study is.
 pub(crate) struct ProgressLine {
     bar: ProgressBar,
+    /// When it was last told without a terminal.
+    told: Cell<Instant>,
 }
 
 impl ProgressLine {
@@ -24,7 +30,7 @@ impl ProgressLine {
         );
         bar.set_prefix(scene.file_name().unwrap_or_default().to_string_lossy().into_owned());
         bar.enable_steady_tick(Duration::from_millis(100));
-        Self { bar }
+        Self { bar, told: Cell::new(Instant::now()) }
     }
 
     /// Says what is going on before there is progress.
@@ -32,7 +38,7 @@ impl ProgressLine {
         self.bar.set_message(what);
     }
 
-    /// Shows how far it is.
+    /// Shows how far a render is; silent where nobody watches.
     pub(crate) fn show(&self, progress: &RenderProgress) {
         self.bar.set_position((progress.fraction * STEPS as f64) as u64);
         self.bar.set_message(message(progress));
@@ -42,6 +48,10 @@ impl ProgressLine {
     pub(crate) fn show_study(&self, progress: &StudyProgress) {
         self.bar.set_position((progress.fraction * STEPS as f64) as u64);
         self.bar.set_message(study_message(progress));
+        if self.bar.is_hidden() && self.told.get().elapsed() >= TELL_EVERY {
+            self.told.set(Instant::now());
+            self.note(&format!("{:.0} %, {}", 100.0 * progress.fraction, study_message(progress)));
+        }
     }
 
     /// Prints a line of its own on stderr, above the bar if there is one.

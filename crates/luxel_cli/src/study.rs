@@ -39,7 +39,7 @@ fn measure(args: &OctreeArgs, source: &Path) -> Result<Studied, CliError> {
         if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let studied = octree::run(&plan(args), &Origin::now(commit(source)), &args.out, &mut observer)?;
-    if !studied.is_complete {
+    if !studied.is_complete && !studied.files.is_empty() {
         progress.note("interrupted; what there is was written");
     }
     Ok(studied)

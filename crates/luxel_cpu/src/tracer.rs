@@ -71,6 +71,11 @@ impl Tracer for CpuTracer {
         Ok(())
     }
 
+    fn leave_world(&mut self) -> Result<(), TraceError> {
+        self.job = None;
+        Ok(())
+    }
+
     fn advance(&mut self, budget_secs: f64, until_samples: u32) -> Result<Progress, TraceError> {
         let job = self.job.as_mut().ok_or_else(no_scene)?;
         let start = Instant::now();

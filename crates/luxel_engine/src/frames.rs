@@ -1,8 +1,12 @@
-//! Measured frames: one world and one tracer that are kept while spheres, structure and settings change.
+//! Measured frames: a tracer, with what it compiled, that is kept while worlds, structures and settings change.
+//!
+//! Other spheres are another world: slots that spheres of an earlier one had would stay in its arrays, and would be
+//! tested and counted.
 //!
 //! A frame is the whole picture at the samples that were asked for; the samples of the next frame are the next of
 //! the same film, so they draw other random numbers. Its time is that of tracing alone: baking, upload and
 //! compilation are over before it starts.
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -47,9 +51,10 @@ pub struct Frame {
     pub counters: Counters,
 }
 
-/// A world of spheres, and the tracer that makes frames of it.
+/// A world of spheres, and the tracer that makes frames of it and of those that come after it.
 pub struct FrameStage {
     engine: Engine,
+    name: PathBuf,
     chosen: ChosenTracer,
     scene: Arc<FlatScene>,
     spp: u32,
@@ -65,7 +70,8 @@ impl FrameStage {
     /// When the backend cannot be had.
     pub fn open(world: World, name: &str, backend: BackendChoice) -> Result<Self, EngineError> {
         Ok(Self {
-            engine: Engine::over(world, std::path::Path::new(name))?,
+            engine: Engine::over(world, Path::new(name))?,
+            name: PathBuf::from(name),
             chosen: backend.open()?,
             scene: Arc::default(),
             spp: 1,
@@ -79,13 +85,14 @@ impl FrameStage {
         self.chosen.tracer.facts()
     }
 
-    /// Changes the world. Its spheres are taken in without a structure, so that what [`FrameStage::set`] asks for
-    /// next is built anew, not edited.
+    /// Goes on with another world. Its spheres are taken in without a structure, so that what [`FrameStage::set`]
+    /// asks for next is built anew, not edited.
     ///
     /// # Errors
-    /// When the scene cannot be baked.
-    pub fn fill(&mut self, change: impl FnOnce(&mut World)) -> Result<(), EngineError> {
-        change(&mut self.engine.world);
+    /// When the device fails or the scene cannot be baked.
+    pub fn enter(&mut self, world: World) -> Result<(), EngineError> {
+        self.chosen.tracer.leave_world()?;
+        self.engine = Engine::over(world, &self.name)?;
         self.engine.world.resource_mut::<SphereCloud>().accel = SphereAccel::Naive;
         self.scene = self.engine.bake()?;
         Ok(())
@@ -116,7 +123,20 @@ impl FrameStage {
     /// # Errors
     /// When the device fails or cuts searches short.
     pub fn frame(&mut self) -> Result<Frame, EngineError> {
-        self.samples += self.spp;
+        self.trace(self.spp)
+    }
+
+    /// Traces one sample per pixel, so that caches are filled and the tracer's slices have found their size before
+    /// frames are measured.
+    ///
+    /// # Errors
+    /// When the device fails or cuts searches short.
+    pub fn warm_up(&mut self) -> Result<(), EngineError> {
+        self.trace(1).map(drop)
+    }
+
+    fn trace(&mut self, samples: u32) -> Result<Frame, EngineError> {
+        self.samples += samples;
         let start = Instant::now();
         self.chosen.tracer.advance(f64::MAX, self.samples)?;
         let secs = start.elapsed().as_secs_f64();

@@ -158,6 +158,13 @@ pub trait Tracer {
     /// When the scene does not fit the device or its kernels cannot be made.
     fn set_scene(&mut self, request: TraceRequest) -> Result<(), TraceError>;
 
+    /// Drops scene and film: the next scene may be of another world, whose revisions tell nothing about this one's.
+    /// Compiled kernels stay.
+    ///
+    /// # Errors
+    /// When the device fails.
+    fn leave_world(&mut self) -> Result<(), TraceError>;
+
     /// Traces for about `budget_secs`, or until every pixel has `until_samples` samples.
     ///
     /// Does at least one slice of work if any is left, so that repeated calls always come to an end.

@@ -22,7 +22,7 @@ const MAX_BOUNCES: u32 = 24;
 
 /// Path tracing by compute kernels.
 ///
-/// A tracer serves one world: it tells what to upload from the revisions of that world's snapshots.
+/// A tracer serves one world until it leaves it: it tells what to upload from the revisions of that world's snapshots.
 pub struct GpuTracer {
     gpu: Gpu,
     cache: PipelineCache,
@@ -302,6 +302,12 @@ impl Tracer for GpuTracer {
             Film::check_room(key.width, key.height, request.features.has(Feature::Aovs))?;
             self.job = Some(self.start(request, key).map_err(trace_error)?);
         }
+        Ok(())
+    }
+
+    fn leave_world(&mut self) -> Result<(), TraceError> {
+        self.job = None;
+        self.world.insert_resource(GpuScene::new(&self.gpu).map_err(trace_error)?);
         Ok(())
     }
 

@@ -64,7 +64,7 @@ pub enum StudyError {
         value: [f32; 3],
     },
     /// A line of a list of runs is no run.
-    #[error("{}, line {line}: {reason}", path.display())]
+    #[error("{}:{line}: {reason}", path.display())]
     Record {
         /// The file as it was named by the caller.
         path: PathBuf,
@@ -73,6 +73,15 @@ pub enum StudyError {
         /// What is wrong with it.
         reason: String,
     },
+    /// A study was to be written to what is no folder.
+    #[error("{} is not a folder", .0.display())]
+    NotAFolder(PathBuf),
+    /// A file in the folder has the name of one of a study's, but is of something else.
+    #[error("{} was not made by an octree study and is left as it is; name another folder", .0.display())]
+    Foreign(PathBuf),
+    /// Two studies were to write to one folder at once.
+    #[error("another study is writing to {}", .0.display())]
+    Busy(PathBuf),
     /// A file or folder of a study cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Write {

@@ -35,10 +35,49 @@ pub(crate) enum Kind {
     Bars,
 }
 
+/// How a series is told from others: the same in every chart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ink {
+    color: RGBColor,
+    is_dashed: bool,
+}
+
+impl Ink {
+    /// One of a few distinct colours.
+    pub(crate) fn distinct(index: usize) -> Self {
+        Self { color: COLORS[index % COLORS.len()], is_dashed: false }
+    }
+
+    /// A colour of an ordered scale, by the place from 0 to 1.
+    pub(crate) fn scale(place: f64) -> Self {
+        let place = place.clamp(0.0, 1.0);
+        let HSLColor(hue, saturation, light) = HSLColor(0.72 * (1.0 - place), 0.75, 0.32 + 0.1 * place);
+        let (red, green, blue) = HSLColor(hue, saturation, light).rgb();
+        Self { color: RGBColor(red, green, blue), is_dashed: false }
+    }
+
+    /// The same colour, its line with gaps if so wished.
+    pub(crate) fn dashed(self, is_dashed: bool) -> Self {
+        Self { is_dashed, ..self }
+    }
+
+    /// As the background of a swatch in CSS.
+    pub(crate) fn css(self) -> String {
+        let RGBColor(red, green, blue) = self.color;
+        let color = format!("#{red:02x}{green:02x}{blue:02x}");
+        if self.is_dashed {
+            format!("repeating-linear-gradient(90deg,{color} 0 4px,transparent 4px 6px)")
+        } else {
+            color
+        }
+    }
+}
+
 /// Values over the categories; `None` where nothing was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Series {
     pub(crate) name: String,
+    pub(crate) ink: Ink,
     pub(crate) values: Vec<Option<f64>>,
 }
 
@@ -68,22 +107,6 @@ impl Chart {
     /// True if there is nothing to draw.
     pub(crate) fn is_empty(&self) -> bool {
         self.shown().next().is_none()
-    }
-
-    /// Colour of a series as `#rrggbb`. Many series are an ordered scale, few are distinct.
-    pub(crate) fn color(&self, series: usize) -> String {
-        let RGBColor(red, green, blue) = self.rgb(series);
-        format!("#{red:02x}{green:02x}{blue:02x}")
-    }
-
-    fn rgb(&self, series: usize) -> RGBColor {
-        if self.series.len() <= COLORS.len() {
-            return COLORS[series % COLORS.len()];
-        }
-        let part = series as f64 / (self.series.len() - 1) as f64;
-        let HSLColor(hue, saturation, light) = HSLColor(0.72 * (1.0 - part), 0.75, 0.32 + 0.1 * part);
-        let (red, green, blue) = HSLColor(hue, saturation, light).rgb();
-        RGBColor(red, green, blue)
     }
 
     /// The chart as an `svg` element.
@@ -152,11 +175,20 @@ impl Chart {
             chart.draw_series(DashedLineSeries::new(ends, 6, 4, RGBColor(120, 120, 120).into()))?;
         }
         for (index, series) in self.series.iter().enumerate() {
-            let color = self.rgb(index);
+            let Ink { color, is_dashed } = series.ink;
             match self.kind {
                 Kind::Lines => {
                     let points = || self.points(series);
-                    chart.draw_series(LineSeries::new(points(), color.stroke_width(2)))?;
+                    if is_dashed {
+                        chart.draw_series(DashedLineSeries::new(
+                            points().collect::<Vec<_>>(),
+                            7,
+                            4,
+                            color.stroke_width(2),
+                        ))?;
+                    } else {
+                        chart.draw_series(LineSeries::new(points(), color.stroke_width(2)))?;
+                    }
                     chart.draw_series(points().map(|point| Circle::new(point, 3, color.filled())))?;
                 }
                 Kind::Bars => {
@@ -209,7 +241,7 @@ mod tests {
             y: "frames per second",
             is_log,
             categories: ["10", "50", "a<b"].map(str::to_owned).to_vec(),
-            series: vec![Series { name: "octree".to_owned(), values }],
+            series: vec![Series { name: "octree".to_owned(), ink: Ink::distinct(0), values }],
             level: Some(144.0),
         }
     }
@@ -246,13 +278,11 @@ mod tests {
     }
 
     #[test]
-    fn many_series_have_colours_of_their_own() {
-        let series = |i: usize| Series { name: i.to_string(), values: vec![] };
-        for count in [1, 7, 8, 12] {
-            let chart =
-                Chart { series: (0..count).map(series).collect(), ..chart(Kind::Bars, false, vec![]) };
-            let colors: std::collections::HashSet<String> = (0..count).map(|i| chart.color(i)).collect();
-            assert_eq!(colors.len(), count);
-        }
+    fn inks_differ() {
+        let distinct = (0..COLORS.len()).map(Ink::distinct);
+        let inks = distinct.chain((0..=10).map(|i| Ink::scale(f64::from(i) / 10.0)));
+        let css: std::collections::HashSet<String> =
+            inks.flat_map(|ink| [ink.css(), ink.dashed(true).css()]).collect();
+        assert_eq!(css.len(), 2 * (COLORS.len() + 11));
     }
 }

@@ -76,24 +76,16 @@ impl SphereField {
     }
 }
 
-/// An empty world with a camera that looks at the box.
-pub(crate) fn stage() -> World {
+/// A world with the spheres of a field and a camera that looks at the box.
+pub(crate) fn world(field: SphereField) -> World {
     let mut world = luxel_scene::empty_world();
     let camera = Camera { focus_distance: EYE.length(), ..Camera::default() };
     world.insert_resource(SKY);
     luxel_scene::spawn(&mut world, (Transform::looking_at(EYE, DVec3::ZERO), camera, ActiveCamera));
-    world
-}
-
-/// Makes the spheres of a field the only ones of a world.
-pub(crate) fn fill(world: &mut World, field: SphereField) {
-    let old: Vec<Entity> = world.query_filtered::<Entity, With<Sphere>>().iter(world).collect();
-    for entity in old {
-        world.despawn(entity);
-    }
     for sphere in field.spheres() {
-        luxel_scene::spawn(world, sphere);
+        luxel_scene::spawn(&mut world, sphere);
     }
+    world
 }
 
 /// Rays from anywhere to anywhere: every second one starts in the box, the others around it.
@@ -152,14 +144,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_field_replaces_the_one_before() {
-        let mut world = stage();
+    fn a_world_has_the_spheres_of_its_field() {
         for (field, count) in [
             (SphereField::Random { count: 40, seed: 1 }, 40),
             (SphereField::Mixed { count: 40, large: 3, seed: 1 }, 43),
             (SphereField::Materials, 3),
         ] {
-            fill(&mut world, field);
+            let mut world = world(field);
             assert_eq!(world.query::<&Sphere>().iter(&world).count(), count);
             assert_eq!(field.count() as usize, count);
         }

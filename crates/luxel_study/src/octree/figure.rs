@@ -11,8 +11,8 @@ pub(crate) struct Figure {
     pub(crate) title: String,
     /// One sentence: what is to be seen.
     pub(crate) shows: String,
-    /// What the report claims, or what one would expect.
-    pub(crate) claim: String,
+    /// What the report claims, or what one would expect; `None` if nothing.
+    pub(crate) claim: Option<String>,
     pub(crate) verdict: Verdict,
     pub(crate) parts: Vec<Part>,
 }
@@ -27,6 +27,16 @@ pub(crate) enum Part {
     Table(Table),
     /// The cells of a cube and the eight directions in which they are visited.
     Cube,
+}
+
+impl Part {
+    /// Draws a value to compare with across a chart.
+    pub(crate) fn with_level(self, level: f64) -> Self {
+        match self {
+            Self::Chart(chart) => Self::Chart(Chart { level: Some(level), ..chart }),
+            other => other,
+        }
+    }
 }
 
 /// Rows of texts under a head.

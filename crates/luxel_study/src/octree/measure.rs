@@ -1,14 +1,14 @@
 //! Measures a plan: group by group, the configurations of a group in turns, one record each.
 //!
-//! A turn bakes a configuration, traces a frame that does not count (caches, shaders, the tracer's slices find their
-//! size), then frames that do, until the turn has its share of frames or of time; at least one. A configuration whose
-//! first warm-up was longer than its turns goes without in later turns. Each turn has random numbers of its own.
+//! A group has a world of its own. A turn bakes a configuration, traces a sample per pixel that does not count (caches,
+//! shaders, the tracer's slices find their size), then frames that do, until the turn has its share of frames or of
+//! time; at least one. Each turn has random numbers of its own.
 use std::ops::ControlFlow;
 use std::time::Instant;
 
 use luxel_engine::{BackendChoice, FrameSettings, FrameStage, SphereAccel};
 
-use super::field;
+use super::field::{self, SphereField};
 use super::measured::{Look, Measured, record};
 use super::origin::Origin;
 use super::picture::png;
@@ -87,7 +87,8 @@ struct Study<'a, 'b> {
 
 impl Study<'_, '_> {
     fn on(&mut self, backend: BackendChoice) -> Result<ControlFlow<()>, StudyError> {
-        let mut stage = FrameStage::open(field::stage(), "(octree study)", backend)?;
+        let materials = field::world(SphereField::Materials);
+        let mut stage = FrameStage::open(materials, "(octree study)", backend)?;
         let groups = self.plan.groups.iter().filter(|group| group.backend == backend);
         for group in groups {
             if self.group(&mut stage, group)?.is_break() {
@@ -98,7 +99,7 @@ impl Study<'_, '_> {
     }
 
     fn group(&mut self, stage: &mut FrameStage, group: &Group) -> Result<ControlFlow<()>, StudyError> {
-        stage.fill(|world| field::fill(world, group.field))?;
+        stage.enter(field::world(group.field))?;
         let mut measured: Vec<Measured> = group.configurations.iter().map(|_| Measured::default()).collect();
         for round in 0..self.plan.rounds {
             for (i, (configuration, measured)) in group.configurations.iter().zip(&mut measured).enumerate() {
@@ -162,9 +163,7 @@ impl Study<'_, '_> {
             measured.build_secs = build_secs(stage)?;
         }
         let secs = group.secs_each / f64::from(self.plan.rounds);
-        if measured.warm_up_secs.is_none_or(|warm_up| warm_up <= secs) {
-            measured.warm_up_secs = Some(stage.frame()?.secs);
-        }
+        stage.warm_up()?;
         let start = Instant::now();
         for _ in 0..self.plan.frames.div_ceil(self.plan.rounds) {
             measured.add(stage.frame()?);
@@ -193,29 +192,36 @@ impl Study<'_, '_> {
         if is_compared && configuration.accel == SphereAccel::OctreeSeed {
             let exact =
                 if group.field.count() <= NAIVE_MOST { SphereAccel::Naive } else { SphereAccel::Octree };
-            let right = self.first_hits(stage, &Configuration { accel: exact, ..*configuration })?;
-            let nearest = stage.nearest(field::rays(WRONG_RAYS, SEED));
-            let seen = self.first_hits(stage, configuration)?;
-            measured.wrong_pixels = Some(differing(&right, &seen));
-            // The rays are traced on the CPU, so that they say nothing about another backend.
-            if group.backend == BackendChoice::Cpu {
-                measured.wrong_rays =
-                    Some(differing(&nearest, &stage.nearest(field::rays(WRONG_RAYS, SEED))));
-            }
+            let right = self.seen(stage, group, &Configuration { accel: exact, ..*configuration })?;
+            let ours = self.seen(stage, group, configuration)?;
+            measured.wrong_pixels = Some(differing(&right.pixels, &ours.pixels));
+            measured.wrong_rays = right.rays.zip(ours.rays).map(|(right, ours)| differing(&right, &ours));
         }
         Ok(())
     }
 
-    fn first_hits(
+    fn seen(
         &self,
         stage: &mut FrameStage,
+        group: &Group,
         configuration: &Configuration,
-    ) -> Result<Vec<u32>, StudyError> {
+    ) -> Result<Seen, StudyError> {
         let settings = self.settings(configuration);
         stage.set(&FrameSettings { spp: 1, max_depth: 0, first_hits: true, ..settings })?;
         stage.frame()?;
-        Ok(stage.first_hits()?)
+        // The rays are traced on the CPU, so that they say nothing about another backend.
+        let is_cpu = group.backend == BackendChoice::Cpu;
+        let rays = is_cpu.then(|| stage.nearest(field::rays(WRONG_RAYS, SEED)));
+        Ok(Seen { pixels: stage.first_hits()?, rays })
     }
+}
+
+/// What rays meet first, by stable id.
+struct Seen {
+    /// Those of the pixels.
+    pixels: Vec<u32>,
+    /// Those from anywhere, where they are compared.
+    rays: Option<Vec<u32>>,
 }
 
 /// The share in which two answers to the same questions differ.

@@ -11,8 +11,6 @@ use super::stats::{median, quantile, without_outliers};
 pub(crate) struct Measured {
     pub(crate) structure: Option<SphereFacts>,
     pub(crate) build_secs: f64,
-    /// Seconds of the last frame that did not count.
-    pub(crate) warm_up_secs: Option<f64>,
     pub(crate) frame_ms: Vec<f64>,
     pub(crate) counters: Counters,
     pub(crate) wrong_pixels: Option<f64>,
@@ -62,6 +60,7 @@ pub(crate) fn record(
         format: FORMAT,
         sweep: group.sweep,
         quick: plan.quick,
+        planned_runs: plan.run_count() as u32,
         date: origin.date.clone(),
         version: origin.version.clone(),
         commit: origin.commit.clone(),
@@ -100,6 +99,7 @@ pub(crate) fn record(
         wrong_pixels: measured.wrong_pixels.map(rounded),
         wrong_rays: measured.wrong_rays.map(rounded),
         noise: noise.map(rounded),
+        frames_ms: measured.frame_ms.into_iter().map(rounded).collect(),
         picture_png: png,
     }
 }

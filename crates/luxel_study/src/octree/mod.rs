@@ -15,6 +15,7 @@ mod cube;
 mod field;
 mod figure;
 mod figures;
+mod list;
 mod measure;
 mod measured;
 mod origin;
@@ -31,12 +32,13 @@ mod verdict;
 
 use std::path::{Path, PathBuf};
 
+pub use list::read_runs;
 pub use measure::{StudyEvent, StudyObserver, StudyProgress};
 pub use origin::Origin;
 pub use page::page;
 pub use plan::Plan;
 pub use record::{FORMAT, Run, STUDY, Sweep};
-pub use store::{PAGE, PREVIOUS_RUNS, RUNS, TABLE, read_runs};
+pub use store::{PAGE, RUNS, TABLE};
 
 use crate::StudyError;
 use store::Folder;
@@ -55,7 +57,8 @@ pub struct Studied {
 /// Measures a plan and writes runs, table and page to a folder, which is made if it is missing.
 ///
 /// # Errors
-/// When the folder cannot be written or holds a list of runs of something else, or when no backend of the plan works.
+/// When the folder cannot be written, holds files of something else or is being written to, or when no backend of the
+/// plan works. What was measured before a backend failed stays in `runs.jsonl.part`.
 pub fn run(
     plan: &Plan,
     origin: &Origin,
@@ -65,29 +68,27 @@ pub fn run(
     let folder = Folder::open(out)?;
     let mut file = folder.begin_runs()?;
     let mut runs = Vec::new();
-    let is_complete = measure::measure(plan, origin, observer, &mut |run| {
+    let measured = measure::measure(plan, origin, observer, &mut |run| {
         file.append(&run)?;
         runs.push(run);
         Ok(())
-    })?;
+    });
     if runs.is_empty() {
         file.discard()?;
-        return Ok(Studied { runs, is_complete, files: Vec::new() });
+        return Ok(Studied { runs, is_complete: measured?, files: Vec::new() });
     }
-    let page = folder.write_page(&page(&runs)?)?;
-    let table = folder.write_table(&runs)?;
-    let list = file.finish()?;
-    Ok(Studied { runs, is_complete, files: vec![page, list, table] })
+    let is_complete = measured?;
+    let files = file.finish(&runs, &page(&runs)?)?.to_vec();
+    Ok(Studied { runs, is_complete, files })
 }
 
 /// Makes table and page again from a list of runs.
 ///
 /// # Errors
-/// When the list cannot be read or has a damaged line, or the folder cannot be written.
+/// When the list cannot be read or has a damaged line, or the folder cannot be written or has files of something else.
 pub fn redo(list: &Path, out: &Path) -> Result<Studied, StudyError> {
     let runs = read_runs(list)?;
     let folder = Folder::open(out)?;
-    let page = folder.write_page(&page(&runs)?)?;
-    let table = folder.write_table(&runs)?;
-    Ok(Studied { runs, is_complete: true, files: vec![page, table] })
+    let files = folder.write(&runs, &page(&runs)?)?.to_vec();
+    Ok(Studied { runs, is_complete: true, files })
 }

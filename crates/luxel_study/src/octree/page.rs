@@ -6,13 +6,15 @@ use super::cube::cube;
 use super::figure::{Figure, Heat, Part, Table};
 use super::figures::{LAST_OF_REPORT, figures};
 use super::record::Run;
-use super::select::Runs;
+use super::select::{FPS_LIMIT, NOISE_QUANTILE, Runs, backend_name};
 use super::stats::MAX_Z;
 use super::summary::summary;
-use super::text::{count, short};
-use super::verdict::{Answer, NOISE};
+use super::text::{count, list, percent, short};
+use super::verdict::{Answer, MAJOR};
 use crate::StudyError;
 
+/// The title of every page, by which it is known again.
+pub(crate) const TITLE: &str = "Luxel: octree study";
 const STYLE: &str = include_str!("page.css");
 
 /// The page of some runs.
@@ -30,7 +32,7 @@ pub fn page(runs: &[Run]) -> Result<String, StudyError> {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Luxel: octree study" }
+                title { (TITLE) }
                 style { (PreEscaped(STYLE)) }
             }
             body {
@@ -44,7 +46,7 @@ pub fn page(runs: &[Run]) -> Result<String, StudyError> {
                 (table(&summary(&selected, &figures)))
                 (verdicts(&figures))
                 h2 { "How it was measured" }
-                (method(&selected))
+                (method(&selected, &figures))
                 h2 { "The report's figures" }
                 @for figure in &reports { (section(figure)?) }
                 h2 { "Further figures" }
@@ -65,7 +67,7 @@ fn verdicts(figures: &[Figure]) -> Markup {
                     @for figure in figures {
                         tr {
                             td { a href={ "#fig-" (figure.number) } { (figure.number) } }
-                            td { (figure.claim) }
+                            td { (claim(figure)) }
                             td { (badge(figure.verdict.answer)) }
                         }
                     }
@@ -75,42 +77,52 @@ fn verdicts(figures: &[Figure]) -> Markup {
     }
 }
 
+fn claim(figure: &Figure) -> &str {
+    figure.claim.as_deref().unwrap_or("The report claims nothing with this figure.")
+}
+
 fn badge(answer: Answer) -> Markup {
     let class = match answer {
         Answer::Holds => "holds",
         Answer::Partly => "partly",
         Answer::Fails => "fails",
-        Answer::NotMeasured => "none",
+        Answer::Open | Answer::NoClaim | Answer::NotMeasured => "none",
     };
     html! { span class={ "verdict " (class) } { (answer.name()) } }
 }
 
-fn method(runs: &Runs<'_>) -> Markup {
+fn method(runs: &Runs<'_>, figures: &[Figure]) -> Markup {
     let most = runs.iter().map(|run| run.frames + run.outliers).max().unwrap_or_default();
     let fewest = runs.iter().map(|run| run.frames + run.outliers).min().unwrap_or_default();
-    let outliers: u32 = runs.iter().map(|run| run.outliers).sum();
+    let outliers: u64 = runs.iter().map(|run| u64::from(run.outliers)).sum();
     let cut_off = runs.filter(|run| run.cut_off).iter().count();
     html! {
+        (stopped(runs))
         p {
             "Scene: random spheres in a box, a third each Lambert, metal and dielectric, together always 3 % of the \
              box, nothing else but the sky. Rays that miss the box around all \
              spheres test none of them, without a structure too. A frame is the whole picture at all its samples. The structures that a \
              figure compares take turns, so that whatever happens to the machine happens to all of them; each turn \
-             begins with a frame that does not count. " (fewest) " to " (most) " frames of each configuration were \
+             begins with a sample per pixel that does not count. " (fewest) " to " (most) " frames of each configuration were \
              measured, fewer where they are slow. Frames with a z-score above " (MAX_Z) " were left out as outliers ("
             (outliers) " in all; among ten frames or fewer none can be); the rest is given by its median."
         }
         p {
-            "Rendering time only: building the structure is given on its own (figure 24). Speeds that differ by less \
-             than " (short(100.0 * NOISE)) " % count as equal where a best setting or a trend is looked for. The report's \
-             octree (octree-seed, octree-base) has a smallest node of 1 as in the report and a depth that grows with \
-             the scene, about a cell per sphere: 1 at 10 spheres, 3 at 1000, 6 at a million; ours has its defaults, depth 20 and 8 spheres. Depths \
-             above 20 are held at 20."
+            "Rendering time only: building the structure is given on its own (figure 24). The report's octree \
+             (octree-seed, octree-base) has a smallest node of 1 as in the report and a depth that grows with the \
+             scene, about a cell per sphere: 1 at 10 spheres, 3 at 1,000, 6 at a million; ours has its defaults, \
+             depth 20 and 8 spheres. Depths above 20 are held at 20."
         }
+        p {
+            "Where a value is taken over several settings it is the geometric mean of their medians. A limit of "
+            (FPS_LIMIT) " frames per second, where a figure has one, is computed: faster frames count as if they \
+             had waited."
+        }
+        (judgement(runs))
         @if cut_off > 0 {
             p {
                 (cut_off) " runs are of octrees that stopped growing before their largest depth because they had used \
-                 up their memory (128 MiB)."
+                 up their memory: 128 MiB for nodes and as much for lists of spheres."
             }
         }
         @if runs.iter().any(|run| run.quick) {
@@ -127,9 +139,59 @@ fn method(runs: &Runs<'_>) -> Markup {
             p {
                 "On the GPU pictures are smaller than on the CPU, for a software driver is many times slower than \
                  native code; compare structures within a backend, not backends with each other."
+                @let cpu_only = cpu_only(runs, figures);
+                @if !cpu_only.is_empty() { " Measured on the CPU only: figures " (cpu_only.join(", ")) "." }
             }
         }
     }
+}
+
+/// How claims are judged.
+fn judgement(runs: &Runs<'_>) -> Markup {
+    let noise = |backend| {
+        let on = runs.on(backend);
+        let taken = if on.knows_noise() { "" } else { " (taken over: nothing was measured twice there)" };
+        format!("{} on the {}{taken}", percent(on.noise().0), backend_name(backend))
+    };
+    html! {
+        p {
+            "Noise: different depths and smallest nodes often lead to the same tree, which is then measured more than \
+             once. " (percent(NOISE_QUANTILE)) " of such pairs of one sweep differ by less than the noise, which is taken \
+             as 5 % at least: " (list(runs.backends().into_iter().map(noise))) ". Speeds that differ by less cannot \
+             be told apart. Sweeps are made one after the other and the machine may change between them; speeds of \
+             different sweeps are not compared."
+        }
+        p {
+            "A claim is taken apart into checks: it holds if all do that can be told, holds partly if some do, and \
+             cannot be told if more than half lie within the noise. A change is major or noticeable if the ratio of \
+             two speeds is above " (MAJOR) "; less is alike. A best setting is given with those that cannot be told from \
+             it. Claims that begin with “Expected” are not the report's."
+        }
+    }
+}
+
+/// Says so if runs are missing that were to be made.
+fn stopped(runs: &Runs<'_>) -> Markup {
+    let studies = runs.values(|run| (run.date.as_str(), run.planned_runs));
+    let planned: u64 = studies.iter().map(|(_, planned)| u64::from(*planned)).sum();
+    let made = runs.iter().count() as u64;
+    html! {
+        @if made < planned {
+            p {
+                strong { "Incomplete: " }
+                (count(made)) " of " (count(planned)) " runs were made before the study was stopped or a backend \
+                 failed. What rests on the others is not measured, or on fewer runs than it should be."
+            }
+        }
+    }
+}
+
+/// The numbers of the figures that runs on the CPU give an answer to and runs on the GPU do not.
+fn cpu_only(runs: &Runs<'_>, all: &[Figure]) -> Vec<String> {
+    let of_gpu = figures(&runs.on("gpu"));
+    let is_there = |figure: &Figure| figure.verdict.answer != Answer::NotMeasured;
+    let pairs = all.iter().zip(&of_gpu).filter(|(all, gpu)| is_there(all) && !is_there(gpu));
+    pairs.map(|(figure, _)| figure.number.to_string()).collect()
 }
 
 fn section(figure: &Figure) -> Result<Markup, StudyError> {
@@ -142,7 +204,7 @@ fn section(figure: &Figure) -> Result<Markup, StudyError> {
             h3 { "Fig. " (figure.number) ": " (figure.title) }
             p { (figure.shows) }
             @for part in parts { (part) }
-            p class="claim" { "Claim: " (figure.claim) }
+            p class="claim" { "Claim: " (claim(figure)) }
             p { (badge(figure.verdict.answer)) " " (figure.verdict.because) }
         }
     })
@@ -181,8 +243,8 @@ fn chart(chart: &Chart) -> Result<Markup, StudyError> {
         p class="caption" { (chart.caption) }
         (PreEscaped(chart.svg()?))
         ul class="legend" {
-            @for (index, series) in chart.series.iter().enumerate() {
-                li { span class="swatch" style={ "background:" (chart.color(index)) } {} (series.name) }
+            @for series in &chart.series {
+                li { span class="swatch" style={ "background:" (series.ink.css()) } {} (series.name) }
             }
         }
         details {
@@ -237,7 +299,7 @@ fn heat(heat: &Heat) -> Markup {
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::example;
+    use super::super::record::{Sweep, example};
     use super::*;
 
     #[test]
@@ -246,6 +308,22 @@ mod tests {
             Run { machine: "<script>alert(1)</script>".to_owned(), device: "a\"b&c".to_owned(), ..example() };
         let page = page(&[run]).unwrap();
         assert!(!page.contains("<script") && page.contains("&lt;script&gt;"));
+    }
+
+    #[test]
+    fn a_study_that_lacks_runs_says_so() {
+        let text = |planned_runs| page(&[Run { planned_runs, ..example() }]).unwrap();
+        assert!(text(7).contains("1 of 7 runs were made") && !text(1).contains("Incomplete"));
+        assert!(!text(0).contains("Incomplete"));
+    }
+
+    #[test]
+    fn figures_without_runs_on_the_gpu_are_named() {
+        let of = |sweep, backend: &str| Run { sweep, backend: backend.to_owned(), ..example() };
+        let picture = |run| Run { picture_png: Some("iVBORw0KGgo=".to_owned()), noise: Some(0.1), ..run };
+        let runs = [picture(of(Sweep::Scene, "cpu")), of(Sweep::Counts, "cpu"), of(Sweep::Counts, "gpu")];
+        let text = page(&runs).unwrap();
+        assert!(text.contains("Measured on the CPU only: figures 2."), "{text}");
     }
 
     #[test]

@@ -211,9 +211,13 @@ impl Extent {
         Group { sweep, backend, field, configurations, secs_each: self.secs_each }
     }
 
-    /// Height of the pictures of a sweep on a backend.
+    /// Height of the pictures of a sweep on a backend: on the GPU all are smaller by the same factor.
     fn height(&self, backend: BackendChoice, cpu_height: u32) -> u32 {
-        if backend == BackendChoice::Gpu { self.gpu_height.min(cpu_height) } else { cpu_height }
+        if backend == BackendChoice::Gpu {
+            cpu_height * self.gpu_height / self.cpu_height
+        } else {
+            cpu_height
+        }
     }
 
     fn pictures(&self, backend: BackendChoice) -> Vec<Group> {
@@ -409,6 +413,17 @@ mod tests {
         let has_naive = |group: &Group| group.configurations.iter().any(|c| c.accel == SphereAccel::Naive);
         for group in plan.groups.iter().filter(|group| group.sweep == Sweep::Counts) {
             assert_eq!(has_naive(group), group.field.count() <= 2000);
+        }
+    }
+
+    #[test]
+    fn resolutions_differ_on_every_backend() {
+        for (extent, backend) in [&FULL, &QUICK, &TINY].into_iter().flat_map(|e| BOTH.map(|b| (e, b))) {
+            let plan = Plan::of(extent, &[backend]);
+            let grid = plan.groups.iter().filter(|group| group.sweep == Sweep::Grid);
+            let sizes: std::collections::BTreeSet<(u32, u32)> =
+                grid.flat_map(|group| &group.configurations).map(|c| c.size).collect();
+            assert_eq!(sizes.len(), extent.grid_heights.len(), "{backend:?} {sizes:?}");
         }
     }
 

@@ -42,6 +42,9 @@ pub struct Run {
     pub sweep: Sweep,
     /// True if the study was shortened.
     pub quick: bool,
+    /// Runs that the study was to have; 0 if it is not known.
+    #[serde(default)]
+    pub planned_runs: u32,
     /// When the study began, UTC, as RFC 3339 has it.
     pub date: String,
     /// Version of Luxel.
@@ -122,6 +125,9 @@ pub struct Run {
     /// Relative error of the picture, estimated from its samples; where there is a picture.
     #[serde(default)]
     pub noise: Option<f64>,
+    /// Every measured frame, outliers too, in the order of their turns, milliseconds; only in `runs.jsonl`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub frames_ms: Vec<f64>,
     /// The picture as a PNG file in base64; only in `runs.jsonl`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub picture_png: Option<String>,
@@ -134,6 +140,7 @@ pub(crate) fn example() -> Run {
         format: FORMAT,
         sweep: Sweep::Counts,
         quick: true,
+        planned_runs: 1,
         date: "2026-11-23T05:00:00Z".to_owned(),
         version: "0.1.0".to_owned(),
         commit: "abc".to_owned(),
@@ -172,6 +179,7 @@ pub(crate) fn example() -> Run {
         wrong_pixels: None,
         wrong_rays: None,
         noise: None,
+        frames_ms: Vec::new(),
         picture_png: None,
     }
 }

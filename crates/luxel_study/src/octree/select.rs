@@ -1,9 +1,9 @@
 //! Questions that figures ask of the records.
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::record::{Run, Sweep};
-use super::stats::geometric_mean;
-use super::verdict::AtCount;
+use super::stats::{geometric_mean, quantile};
+use super::verdict::{AtCount, Noise};
 
 /// The structure that the report ends with: first leaf with a hit, eight orders.
 pub(crate) const REPORTS: &str = "octree-seed";
@@ -39,17 +39,66 @@ pub(crate) fn backend_name(backend: &str) -> &'static str {
     if backend == "gpu" { "GPU" } else { "CPU" }
 }
 
-/// A selection of records.
+/// Part of the repeats whose difference is taken for noise.
+pub(crate) const NOISE_QUANTILE: f64 = 0.9;
+
+/// A selection of records, with the noise of all of them.
 #[derive(Clone)]
-pub(crate) struct Runs<'a>(Vec<&'a Run>);
+pub(crate) struct Runs<'a> {
+    runs: Vec<&'a Run>,
+    noise: BTreeMap<&'a str, Noise>,
+}
+
+/// An octree on a backend, with its runs.
+pub(crate) struct Subject<'a> {
+    pub(crate) name: String,
+    pub(crate) runs: Runs<'a>,
+}
 
 impl<'a> Runs<'a> {
     pub(crate) fn all(runs: &'a [Run]) -> Self {
-        Self(runs.iter().collect())
+        let all = Self { runs: runs.iter().collect(), noise: BTreeMap::new() };
+        let measured = |backend| Some((backend, repeat_spread(&all.on(backend))?));
+        let noise = all.backends().into_iter().filter_map(measured);
+        Self { noise: noise.collect(), ..all }
+    }
+
+    /// How far speeds may differ that are the same: the most of the backends of these runs. A backend on which
+    /// nothing was measured more than once is taken to be as noisy as the others.
+    pub(crate) fn noise(&self) -> Noise {
+        let most = |noises: &mut dyn Iterator<Item = &Noise>| {
+            Noise(noises.map(|noise| noise.0).fold(Noise::LEAST.0, f64::max))
+        };
+        let backends = self.backends();
+        if self.knows_noise() {
+            most(&mut backends.iter().filter_map(|backend| self.noise.get(backend)))
+        } else {
+            most(&mut self.noise.values())
+        }
+    }
+
+    /// True if the noise of the backends of these runs was measured.
+    pub(crate) fn knows_noise(&self) -> bool {
+        self.backends().iter().all(|backend| self.noise.contains_key(backend))
+    }
+
+    /// The report's octree and ours on each backend, where they were measured.
+    pub(crate) fn octrees(&self) -> Vec<Subject<'a>> {
+        let mut all = Vec::new();
+        for backend in self.backends() {
+            for structure in [REPORTS, OURS] {
+                let runs = self.on(backend).with(structure);
+                if !runs.is_empty() {
+                    all.push(Subject { name: format!("{structure} on the {}", backend_name(backend)), runs });
+                }
+            }
+        }
+        all
     }
 
     pub(crate) fn filter(&self, is_wanted: impl Fn(&Run) -> bool) -> Self {
-        Self(self.0.iter().copied().filter(|run| is_wanted(run)).collect())
+        let runs = self.iter().filter(|run| is_wanted(run)).collect();
+        Self { runs, noise: self.noise.clone() }
     }
 
     pub(crate) fn of(&self, sweep: Sweep) -> Self {
@@ -69,15 +118,15 @@ impl<'a> Runs<'a> {
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = &'a Run> + '_ {
-        self.0.iter().copied()
+        self.runs.iter().copied()
     }
 
     pub(crate) fn first(&self) -> Option<&'a Run> {
-        self.0.first().copied()
+        self.runs.first().copied()
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.runs.is_empty()
     }
 
     /// Different values of a field, in their order.
@@ -122,5 +171,54 @@ impl<'a> Runs<'a> {
         let (fast, slow) = (self.with(fast), self.with(slow));
         let ratio = |count: u32| Some((count, fast.at(count).fps()? / slow.at(count).fps()?));
         self.counts().into_iter().filter_map(ratio).collect()
+    }
+}
+
+/// How far repeated measurements lie apart: the same tree, size and quality within one sweep, whose structures take
+/// turns, measured again because another depth or smallest node led to it. `None` without a repeat.
+fn repeat_spread(runs: &Runs<'_>) -> Option<Noise> {
+    let mut repeats: BTreeMap<_, Vec<f64>> = BTreeMap::new();
+    for run in runs.iter() {
+        let sweep = match run.sweep {
+            Sweep::Depth => 0,
+            Sweep::Fraction => 1,
+            Sweep::DepthQuality => 2,
+            _ => continue,
+        };
+        let tree = (run.structure.as_str(), run.spheres, run.nodes, run.bytes);
+        repeats.entry((sweep, tree, run.width, run.height, run.spp)).or_default().push(run.fps);
+    }
+    let mut spreads = Vec::new();
+    for speeds in repeats.values() {
+        for (i, a) in speeds.iter().enumerate() {
+            spreads.extend(speeds[..i].iter().map(|b| (a / b).max(b / a) - 1.0));
+        }
+    }
+    quantile(&spreads, NOISE_QUANTILE).map(|spread| Noise(spread.max(Noise::LEAST.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::record::example;
+    use super::*;
+
+    fn repeat(sweep: Sweep, nodes: u32, fps: f64) -> Run {
+        Run { sweep, nodes, fps, ..example() }
+    }
+
+    #[test]
+    fn the_noise_is_what_repeats_of_a_tree_differ_by() {
+        let noise = |runs: &[Run]| Runs::all(runs).noise().0;
+        let same = [repeat(Sweep::Depth, 9, 100.0), repeat(Sweep::Depth, 9, 120.0)];
+        assert!((noise(&same) - 0.2).abs() < 1e-12);
+        let other_tree = [repeat(Sweep::Depth, 9, 100.0), repeat(Sweep::Depth, 17, 200.0)];
+        assert_eq!(noise(&other_tree), Noise::LEAST.0);
+        let other_time = [repeat(Sweep::Depth, 9, 100.0), repeat(Sweep::Fraction, 9, 200.0)];
+        assert_eq!(noise(&other_time), Noise::LEAST.0);
+        let mut both = same.to_vec();
+        both.push(Run { backend: "gpu".to_owned(), ..example() });
+        assert!(!Runs::all(&both).on("gpu").knows_noise() && Runs::all(&both).on("cpu").knows_noise());
+        assert_eq!(Runs::all(&both).on("gpu").noise(), Runs::all(&both).on("cpu").noise());
+        assert!((Runs::all(&both).noise().0 - 0.2).abs() < 1e-12);
     }
 }

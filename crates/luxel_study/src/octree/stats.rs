@@ -1,4 +1,4 @@
-//! Medians, outliers, correlation: what a list of frame times comes to.
+//! Medians, outliers, slopes: what a list of frame times comes to.
 //!
 //! Outliers are found as in seed document 1 (III): a frame whose z-score, its distance from the mean in standard
 //! deviations of the sample, is above 3 goes. The rule is applied once. In a sample of n values no z-score exceeds
@@ -44,13 +44,14 @@ pub(crate) fn geometric_mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| (sum / values.len() as f64).exp())
 }
 
-/// Pearson's correlation of pairs; `None` if either side does not vary.
-pub(crate) fn correlation(pairs: &[(f64, f64)]) -> Option<f64> {
-    let (xs, ys): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
-    let ((mean_x, dev_x), (mean_y, dev_y)) = (mean_and_deviation(&xs)?, mean_and_deviation(&ys)?);
-    let together: f64 = pairs.iter().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
-    let scale = dev_x * dev_y * (pairs.len() - 1) as f64;
-    (scale > 0.0).then(|| together / scale)
+/// By which factor `y` changes when `x` doubles, for a power law: the straight line of least squares through the
+/// logarithms. `None` if `x` does not vary.
+pub(crate) fn factor_per_doubling(pairs: &[(f64, f64)]) -> Option<f64> {
+    let (xs, ys): (Vec<f64>, Vec<f64>) = pairs.iter().map(|(x, y)| (x.log2(), y.log2())).unzip();
+    let ((mean_x, _), (mean_y, _)) = (mean_and_deviation(&xs)?, mean_and_deviation(&ys)?);
+    let squares: f64 = xs.iter().map(|x| (x - mean_x).powi(2)).sum();
+    let products: f64 = xs.iter().zip(&ys).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
+    (squares > 0.0).then(|| (products / squares).exp2())
 }
 
 #[cfg(test)]
@@ -84,10 +85,15 @@ mod tests {
     }
 
     #[test]
-    fn correlation_has_its_sign_and_size() {
-        let line: Vec<(f64, f64)> = (0..9).map(|i| (f64::from(i), 5.0 - 2.0 * f64::from(i))).collect();
-        assert!((correlation(&line).unwrap() + 1.0).abs() < 1e-12);
-        assert_eq!(correlation(&[(1.0, 2.0), (2.0, 2.0)]), None);
+    fn a_power_law_has_its_factor_whatever_its_range() {
+        let law = |steps: i32, power: i32| {
+            let x = |step: i32| 3f64 * 2f64.powi(step);
+            let pairs: Vec<(f64, f64)> = (0..steps).map(|i| (x(i), 7.0 * x(i).powi(power))).collect();
+            factor_per_doubling(&pairs).unwrap()
+        };
+        assert!((law(2, -2) - 0.25).abs() < 1e-12 && (law(9, -2) - 0.25).abs() < 1e-12);
+        assert!((law(5, 1) - 2.0).abs() < 1e-12);
+        assert_eq!(factor_per_doubling(&[(2.0, 1.0), (2.0, 2.0)]), None);
         assert!((geometric_mean(&[1.0, 4.0]).unwrap() - 2.0).abs() < 1e-12);
     }
 }

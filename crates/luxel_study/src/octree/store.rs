@@ -1,68 +1,32 @@
-//! The files of a study: `runs.jsonl`, a line per run; `runs.csv`, the same without pictures; `octree.html`.
+//! The files of a study: `runs.jsonl`, a line per run; `runs.csv`, the same without pictures and single frames;
+//! `octree.html`.
 //!
-//! Runs are appended to `runs.jsonl.part` as they are measured. When the study is over the file takes its name; a
-//! study that was there before is kept as `runs.previous.jsonl`. Whatever else is in the folder stays as it is.
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write as _};
+//! Runs are appended to `runs.jsonl.part` as they are measured; a lock keeps other studies from it. When the study is
+//! over, page and table are written beside their places, and then all take their names. What an earlier study left,
+//! or one that was cut short, is kept as `runs.previous-1.jsonl` and so on. Files that are of no study stay as they
+//! are: they are an error.
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::picture::is_png;
-use super::record::{FORMAT, Run, STUDY};
+use tempfile::NamedTempFile;
+
+use super::list::read_runs;
+use super::page::TITLE;
+use super::record::Run;
 use crate::StudyError;
 
 /// Records, a JSON object per line.
 pub const RUNS: &str = "runs.jsonl";
-/// The records of the study that was there before.
-pub const PREVIOUS_RUNS: &str = "runs.previous.jsonl";
 /// The records as a table.
 pub const TABLE: &str = "runs.csv";
 /// The page.
 pub const PAGE: &str = "octree.html";
 const PART: &str = "runs.jsonl.part";
-
-/// Reads the records of an earlier study.
-///
-/// # Errors
-/// [`StudyError::Io`], or [`StudyError::Record`] with the first line that is no record of this study.
-pub fn read_runs(path: &Path) -> Result<Vec<Run>, StudyError> {
-    let text = fs::read_to_string(path).map_err(|source| StudyError::Io { path: path.to_owned(), source })?;
-    let bad = |line: usize, reason: String| StudyError::Record { path: path.to_owned(), line, reason };
-    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let runs = lines.map(|(i, line)| read_run(line).map_err(|reason| bad(i + 1, reason)));
-    let runs = runs.collect::<Result<Vec<Run>, StudyError>>()?;
-    if runs.is_empty() { Err(bad(1, "there is no run in it".to_owned())) } else { Ok(runs) }
-}
-
-fn read_run(line: &str) -> Result<Run, String> {
-    let run: Run = serde_json::from_str(line).map_err(|error| error.to_string())?;
-    if (run.study.as_str(), run.format) != (STUDY, FORMAT) {
-        return Err(format!("study '{}', format {}: not of this study", run.study, run.format));
-    }
-    let numbers = [
-        run.build_secs,
-        run.frame_ms,
-        run.frame_ms_p25,
-        run.frame_ms_p75,
-        run.fps,
-        run.rays,
-        run.rays_per_sec,
-        run.nodes_per_ray,
-        run.tests_per_ray,
-        run.wrong_pixels.unwrap_or_default(),
-        run.wrong_rays.unwrap_or_default(),
-        run.noise.unwrap_or_default(),
-    ];
-    if numbers.iter().any(|number| !(0.0..=f64::MAX).contains(number))
-        || run.frame_ms == 0.0
-        || run.fps == 0.0
-    {
-        return Err("a time, count or share is out of range".to_owned());
-    }
-    if run.picture_png.as_ref().is_some_and(|text| !is_png(text)) {
-        return Err("picture_png is not a PNG file in base64".to_owned());
-    }
-    Ok(run)
-}
+/// How every table of a study begins, whatever columns follow.
+const TABLE_BEGIN: &str = "study,format,sweep,";
+/// Bytes at the beginning of a file that say what it is.
+const BEGIN_BYTES: u64 = 1000;
 
 /// A folder that a study is being written to.
 pub(crate) struct Folder {
@@ -70,14 +34,26 @@ pub(crate) struct Folder {
 }
 
 impl Folder {
-    /// Makes the folder if it is missing, and finds out whether files can be made in it.
+    /// Makes the folder if it is missing, and finds out whether files can be made in it and whether those that are
+    /// there may be replaced.
     pub(crate) fn open(path: &Path) -> Result<Self, StudyError> {
         let folder = Self { path: path.to_owned() };
+        if let Some(file) = path.ancestors().find(|place| place.is_file()) {
+            return Err(StudyError::NotAFolder(file.to_owned()));
+        }
         fs::create_dir_all(path).map_err(|source| folder.error("", source))?;
-        tempfile::tempfile_in(path).map_err(|source| folder.error("", source))?;
-        for name in [RUNS, PREVIOUS_RUNS, TABLE, PAGE, PART] {
+        new_file(path).map_err(|source| folder.error("", source))?;
+        for name in [RUNS, TABLE, PAGE, PART] {
             if path.join(name).is_dir() {
                 return Err(folder.error(name, io::Error::from(io::ErrorKind::IsADirectory)));
+            }
+        }
+        let is_of_study = read_runs(&path.join(RUNS)).is_ok();
+        let title = format!("<title>{TITLE}</title>");
+        for (name, mark) in [(TABLE, TABLE_BEGIN), (PAGE, title.as_str())] {
+            let file = path.join(name);
+            if !is_of_study && file.exists() && !begins_with(&file, mark) {
+                return Err(StudyError::Foreign(file));
             }
         }
         Ok(folder)
@@ -90,43 +66,87 @@ impl Folder {
         if there.exists() {
             read_runs(&there)?;
         }
-        let path = self.path.join(PART);
-        let file = OpenOptions::new().create(true).write(true).truncate(true).open(path);
-        Ok(RunsFile { folder: self, file: file.map_err(|source| self.error(PART, source))? })
+        let mut file = self.lock_part()?;
+        if file.metadata().map_err(|source| self.error(PART, source))?.len() > 0 {
+            self.keep(PART)?;
+            file = self.lock_part()?;
+        }
+        Ok(RunsFile { folder: self, file })
     }
 
-    /// Writes the table of runs.
-    pub(crate) fn write_table(&self, runs: &[Run]) -> Result<PathBuf, StudyError> {
+    /// Opens the growing list for this study alone.
+    fn lock_part(&self) -> Result<File, StudyError> {
+        let file = OpenOptions::new().create(true).append(true).open(self.path.join(PART));
+        let file = file.map_err(|source| self.error(PART, source))?;
+        match file.try_lock() {
+            Ok(()) => Ok(file),
+            Err(TryLockError::WouldBlock) => Err(StudyError::Busy(self.path.clone())),
+            Err(TryLockError::Error(source)) => Err(self.error(PART, source)),
+        }
+    }
+
+    /// Writes page and table, both or none.
+    pub(crate) fn write(&self, runs: &[Run], page: &str) -> Result<[PathBuf; 2], StudyError> {
+        let (page, table) = (self.beside(PAGE, page.as_bytes())?, self.beside(TABLE, &self.table(runs)?)?);
+        Ok([self.place(page, PAGE)?, self.place(table, TABLE)?])
+    }
+
+    fn table(&self, runs: &[Run]) -> Result<Vec<u8>, StudyError> {
         let mut table = csv::Writer::from_writer(Vec::new());
         for run in runs {
-            table.serialize(Run { picture_png: None, ..run.clone() })?;
+            table.serialize(Run { picture_png: None, frames_ms: Vec::new(), ..run.clone() })?;
         }
-        let bytes = table.into_inner().map_err(|error| self.error(TABLE, error.into_error()))?;
-        self.write(TABLE, &bytes)
+        table.into_inner().map_err(|error| self.error(TABLE, error.into_error()))
     }
 
-    /// Writes the page.
-    pub(crate) fn write_page(&self, page: &str) -> Result<PathBuf, StudyError> {
-        self.write(PAGE, page.as_bytes())
+    /// A new file in the folder, which goes away unless it is placed.
+    fn beside(&self, name: &str, bytes: &[u8]) -> Result<NamedTempFile, StudyError> {
+        let write = || {
+            let mut file = new_file(&self.path)?;
+            file.write_all(bytes)?;
+            file.as_file().sync_all()?;
+            Ok(file)
+        };
+        write().map_err(|source| self.error(name, source))
     }
 
-    /// Writes a file beside its place and moves it there.
-    fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, StudyError> {
-        let part = self.path.join(format!("{name}.part"));
-        fs::write(&part, bytes).map_err(|source| self.error(name, source))?;
-        self.rename(&part, name)
-    }
-
-    fn rename(&self, from: &Path, name: &str) -> Result<PathBuf, StudyError> {
+    fn place(&self, file: NamedTempFile, name: &str) -> Result<PathBuf, StudyError> {
         let to = self.path.join(name);
-        fs::rename(from, &to).map_err(|source| self.error(name, source))?;
+        file.persist(&to).map_err(|error| self.error(name, error.error))?;
         Ok(to)
+    }
+
+    /// Gives a list of runs the first name of earlier lists that is free.
+    fn keep(&self, name: &str) -> Result<(), StudyError> {
+        let backup = |number: u64| self.path.join(format!("runs.previous-{number}.jsonl"));
+        let mut number = 1;
+        while backup(number).symlink_metadata().is_ok() {
+            number += 1;
+        }
+        let to = backup(number);
+        fs::rename(self.path.join(name), &to).map_err(|source| StudyError::Write { path: to, source })
     }
 
     fn error(&self, name: &str, source: io::Error) -> StudyError {
         let path = if name.is_empty() { self.path.clone() } else { self.path.join(name) };
         StudyError::Write { path, source }
     }
+}
+
+/// A file that others may read as far as the user's umask allows; temporary files are private by default.
+fn new_file(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".luxel-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+/// True if a mark stands at the beginning of a file, or not far from it.
+fn begins_with(path: &Path, mark: &str) -> bool {
+    let mut begin = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(BEGIN_BYTES).read_to_end(&mut begin));
+    read.is_ok() && String::from_utf8_lossy(&begin).contains(mark)
 }
 
 /// The list of runs as it grows.
@@ -138,27 +158,27 @@ pub(crate) struct RunsFile<'a> {
 impl RunsFile<'_> {
     /// Appends a run.
     pub(crate) fn append(&mut self, run: &Run) -> Result<(), StudyError> {
-        let line = serde_json::to_string(run)?;
-        writeln!(self.file, "{line}").map_err(|source| self.folder.error(PART, source))
+        let line = serde_json::to_string(run)? + "\n";
+        self.file.write_all(line.as_bytes()).map_err(|source| self.folder.error(PART, source))
     }
 
     /// Removes it: nothing was measured.
     pub(crate) fn discard(self) -> Result<(), StudyError> {
-        let Self { folder, file } = self;
-        drop(file);
-        fs::remove_file(folder.path.join(PART)).map_err(|source| folder.error(PART, source))
+        let path = self.folder.path.join(PART);
+        fs::remove_file(path).map_err(|source| self.folder.error(PART, source))
     }
 
-    /// Gives the file its name.
-    pub(crate) fn finish(self) -> Result<PathBuf, StudyError> {
+    /// Writes page and table, and gives all three their names.
+    pub(crate) fn finish(self, runs: &[Run], page: &str) -> Result<[PathBuf; 3], StudyError> {
         let Self { folder, file } = self;
         file.sync_all().map_err(|source| folder.error(PART, source))?;
-        drop(file);
-        let there = folder.path.join(RUNS);
-        if there.exists() {
-            folder.rename(&there, PREVIOUS_RUNS)?;
+        let [page, table] = folder.write(runs, page)?;
+        let list = folder.path.join(RUNS);
+        if list.exists() {
+            folder.keep(RUNS)?;
         }
-        folder.rename(&folder.path.join(PART), RUNS)
+        fs::rename(folder.path.join(PART), &list).map_err(|source| folder.error(RUNS, source))?;
+        Ok([page, list, table])
     }
 }
 
@@ -167,64 +187,91 @@ mod tests {
     use super::super::record::example;
     use super::*;
 
-    fn line() -> String {
-        serde_json::to_string(&example()).unwrap()
+    fn make(store: &Folder, runs: &[Run]) -> [PathBuf; 3] {
+        let mut file = store.begin_runs().unwrap();
+        runs.iter().for_each(|run| file.append(run).unwrap());
+        file.finish(runs, "page").unwrap()
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
     }
 
     #[test]
     fn runs_come_back_from_both_files() {
         let folder = tempfile::tempdir().unwrap();
         let store = Folder::open(folder.path()).unwrap();
+        let frames_ms = vec![10.0; 51];
         let runs = [
-            example(),
+            Run { frames_ms, ..example() },
             Run { wrong_pixels: Some(0.25), wrong_rays: Some(0.5), noise: None, spheres: 7, ..example() },
         ];
-        let mut file = store.begin_runs().unwrap();
-        runs.iter().for_each(|run| file.append(run).unwrap());
-        assert_eq!(read_runs(&file.finish().unwrap()).unwrap(), runs);
-        let table = store.write_table(&runs).unwrap();
+        let [_, list, table] = make(&store, &runs);
+        assert_eq!(read_runs(&list).unwrap(), runs);
         let rows: Vec<Run> =
             csv::Reader::from_path(table).unwrap().deserialize().map(Result::unwrap).collect();
-        assert_eq!(rows, runs);
+        assert_eq!(rows, runs.map(|run| Run { frames_ms: Vec::new(), ..run }));
     }
 
     #[test]
-    fn the_study_before_is_kept_and_a_foreign_file_left_alone() {
+    fn every_study_before_is_kept_and_what_one_that_was_cut_short_left() {
         let folder = tempfile::tempdir().unwrap();
         let store = Folder::open(folder.path()).unwrap();
-        for spheres in [1, 2] {
-            let mut file = store.begin_runs().unwrap();
-            file.append(&Run { spheres, ..example() }).unwrap();
-            file.finish().unwrap();
+        for spheres in 1..=3 {
+            make(&store, &[Run { spheres, ..example() }]);
         }
-        assert_eq!(read_runs(&folder.path().join(PREVIOUS_RUNS)).unwrap()[0].spheres, 1);
-        assert_eq!(read_runs(&folder.path().join(RUNS)).unwrap()[0].spheres, 2);
-        fs::write(folder.path().join(RUNS), "{\"study\":\"sales\"}\n").unwrap();
-        assert!(matches!(store.begin_runs(), Err(StudyError::Record { line: 1, .. })));
-        assert_eq!(fs::read_to_string(folder.path().join(RUNS)).unwrap(), "{\"study\":\"sales\"}\n");
+        let mut cut = store.begin_runs().unwrap();
+        cut.append(&Run { spheres: 4, ..example() }).unwrap();
+        drop(cut);
+        make(&store, &[Run { spheres: 5, ..example() }]);
+        let kept = (1..=4).map(|number| format!("runs.previous-{number}.jsonl"));
+        let lists: Vec<String> = kept.chain([RUNS.to_owned()]).collect();
+        let spheres = lists.iter().map(|name| read_runs(&folder.path().join(name)).unwrap()[0].spheres);
+        assert_eq!(spheres.collect::<Vec<u32>>(), [1, 2, 4, 3, 5]);
+        assert_eq!(names(folder.path()).len(), 7);
     }
 
     #[test]
-    fn a_damaged_file_is_one_error_with_file_and_line() {
+    fn two_studies_do_not_share_a_list() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("runs.jsonl");
-        let good = line();
-        for (third, part) in [
-            ("{\"study\"", "EOF"),
-            (&good.replace("\"octree\",\"format\"", "\"bvh\",\"format\""), "study 'bvh'"),
-            (&good.replace("\"fps\":100.0", "\"fps\":0.0"), "out of range"),
-            (&good.replace("\"fps\":100.0", "\"fps\":-1.0"), "out of range"),
-            (&good.replace("\"fps\":100.0", "\"fps\":1e999"), "number out of range"),
-            (&good.replace("\"fps\"", "\"pfs\""), "unknown field `pfs`"),
-            (&good.replace('}', ",\"picture_png\":\"\\\" onerror=\"}"), "picture_png"),
-        ] {
-            assert_ne!(third, good);
-            fs::write(&path, format!("{good}\n\n{third}\n")).unwrap();
-            let message = read_runs(&path).unwrap_err().to_string();
-            assert!(message.contains("runs.jsonl, line 3:") && message.contains(part), "{message}");
+        let store = Folder::open(folder.path()).unwrap();
+        let first = store.begin_runs().unwrap();
+        assert!(matches!(store.begin_runs(), Err(StudyError::Busy(_))));
+        first.discard().unwrap();
+        assert!(names(folder.path()).is_empty());
+        store.begin_runs().unwrap().discard().unwrap();
+    }
+
+    #[test]
+    fn files_of_something_else_are_left_alone() {
+        for name in [TABLE, PAGE] {
+            let folder = tempfile::tempdir().unwrap();
+            let foreign = folder.path().join(name);
+            fs::write(&foreign, "sales").unwrap();
+            let message = Folder::open(folder.path()).err().unwrap().to_string();
+            assert!(message.contains(name), "{message}");
+            fs::write(folder.path().join(RUNS), serde_json::to_string(&example()).unwrap()).unwrap();
+            Folder::open(folder.path()).unwrap();
         }
-        fs::write(&path, "\n").unwrap();
-        assert!(read_runs(&path).unwrap_err().to_string().contains("no run"));
+        let folder = tempfile::tempdir().unwrap();
+        let store = Folder::open(folder.path()).unwrap();
+        let list = folder.path().join(RUNS);
+        fs::write(&list, "{\"study\":\"sales\"}\n").unwrap();
+        assert!(matches!(store.begin_runs(), Err(StudyError::Record { line: 1, .. })));
+        assert_eq!(fs::read_to_string(list).unwrap(), "{\"study\":\"sales\"}\n");
+    }
+
+    #[test]
+    fn page_and_table_of_a_study_may_be_made_again() {
+        let folder = tempfile::tempdir().unwrap();
+        for _ in 0..2 {
+            let store = Folder::open(folder.path()).unwrap();
+            store.write(&[example()], &super::super::page::page(&[example()]).unwrap()).unwrap();
+        }
+        assert_eq!(names(folder.path()), [PAGE, TABLE]);
     }
 
     #[test]
@@ -232,8 +279,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         fs::write(&file, "").unwrap();
-        let message = Folder::open(&file.join("out")).err().unwrap().to_string();
-        assert!(message.contains("file/out"), "{message}");
+        for path in [file.join("out"), file] {
+            let message = Folder::open(&path).err().unwrap().to_string();
+            assert!(message.ends_with("file is not a folder"), "{message}");
+        }
         fs::create_dir_all(folder.path().join("out/octree.html")).unwrap();
         let message = Folder::open(&folder.path().join("out")).err().unwrap().to_string();
         assert!(message.contains("octree.html"), "{message}");

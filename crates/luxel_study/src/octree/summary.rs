@@ -16,6 +16,10 @@ pub(crate) fn summary(runs: &Runs<'_>, figures: &[Figure]) -> Table {
     for backend in runs.backends() {
         let on = runs.on(backend);
         row(backend_name(backend), list(on.values(|run| device(&run.device, &run.driver))));
+        row(
+            &format!("Noise on the {}", backend_name(backend)),
+            format!("speeds that differ by less than {} cannot be told apart", percent(on.noise().0)),
+        );
     }
     let counts = runs.of(Sweep::Counts);
     for backend in counts.backends() {
@@ -40,14 +44,17 @@ fn findings(on: &Runs<'_>, mixed: &Runs<'_>) -> Vec<(&'static str, String)> {
     let mut found = Vec::new();
     let small = on.filter(|run| run.spheres <= 2000);
     for (name, structure) in [
-        ("Crossover: our octree is faster than naive", OURS),
-        ("Crossover: the report's octree is faster than naive", REPORTS),
+        ("Crossover: our octree becomes faster than naive", OURS),
+        ("Crossover: the report's octree becomes faster than naive", REPORTS),
     ] {
-        found.push((name, crossover_text(&small.ratios(structure, NAIVE))));
+        found.push((name, crossover_text(small.noise(), &small.ratios(structure, NAIVE))));
     }
     let advantage = small.ratios(OURS, NAIVE);
     if let Some((spheres, ratio)) = advantage.last() {
-        found.push(("Our octree against naive", format!("{} at {spheres} spheres", times(*ratio))));
+        found.push((
+            "Our octree against naive",
+            format!("{} at {} spheres", times(*ratio), count(u64::from(*spheres))),
+        ));
     }
     let wrong = on.iter().chain(mixed.iter()).filter_map(|run| Some((run.wrong_pixels?, run)));
     if let Some((most, run)) = wrong.max_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -77,11 +84,11 @@ fn findings(on: &Runs<'_>, mixed: &Runs<'_>) -> Vec<(&'static str, String)> {
             found.push((
                 "Fastest exact structure",
                 format!(
-                    "{} at {} spheres: {} ms per frame, {} rays per second",
+                    "{} at {} spheres: {} ms per frame, {} million rays per second",
                     fastest.structure,
                     count(u64::from(*largest)),
                     short(fastest.frame_ms),
-                    short(fastest.rays_per_sec)
+                    short(1e-6 * fastest.rays_per_sec)
                 ),
             ));
         }
@@ -95,5 +102,6 @@ fn tally(figures: &[Figure]) -> String {
         let count = figures.iter().filter(|figure| figure.verdict.answer == answer).count();
         (count > 0).then(|| format!("{}: {count}", answer.name()))
     };
-    list([Answer::Holds, Answer::Partly, Answer::Fails, Answer::NotMeasured].into_iter().filter_map(of))
+    let with_claim = Answer::ALL.into_iter().filter(|answer| *answer != Answer::NoClaim);
+    list(with_claim.filter_map(of))
 }

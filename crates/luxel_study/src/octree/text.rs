@@ -1,22 +1,24 @@
 //! Numbers as people read them.
 
-/// Three significant digits, with k and M for large numbers.
+/// Three significant digits, with commas between thousands.
 pub(crate) fn short(value: f64) -> String {
-    let (scaled, unit) = match value.abs() {
-        size if size >= 999_500.0 => (value / 1e6, " M"),
-        size if size >= 9_995.0 => (value / 1e3, " k"),
-        _ => (value, ""),
+    let size = value.abs();
+    let text = if size >= 999.5 {
+        let unit = 10f64.powf(size.log10().floor() - 2.0);
+        count(((size / unit).round() * unit).round() as u64)
+    } else {
+        significant(size)
     };
-    format!("{}{unit}", significant(scaled))
+    if value < 0.0 { format!("−{text}") } else { text }
 }
 
-fn significant(value: f64) -> String {
-    let size = value.abs();
+/// Three significant digits of a size below 1000.
+fn significant(size: f64) -> String {
     if size == 0.0 || size >= 99.95 {
-        return format!("{value:.0}");
+        return format!("{size:.0}");
     }
     let digits = (2.0 - size.log10().floor()).clamp(0.0, 8.0) as usize;
-    let text = format!("{value:.digits$}");
+    let text = format!("{size:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
@@ -40,7 +42,7 @@ pub(crate) fn percent(part: f64) -> String {
 
 /// How many times as much.
 pub(crate) fn times(ratio: f64) -> String {
-    if ratio < 9_995.0 { format!("{}×", short(ratio)) } else { format!("{}×", count(ratio.round() as u64)) }
+    format!("{}×", short(ratio))
 }
 
 /// Names or numbers as an enumeration; `none` for an empty one.
@@ -66,10 +68,11 @@ mod tests {
             (9.999, "10"),
             (12.34, "12.3"),
             (144.0, "144"),
-            (2000.0, "2000"),
-            (12_345.0, "12.3 k"),
-            (1e6, "1 M"),
-            (-3.456, "-3.46"),
+            (2000.0, "2,000"),
+            (12_345.0, "12,300"),
+            (999.7, "1,000"),
+            (1e6, "1,000,000"),
+            (-3.456, "−3.46"),
         ] {
             assert_eq!(short(value), text);
         }

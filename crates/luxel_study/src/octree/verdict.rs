@@ -1,12 +1,86 @@
 //! Whether a claim of the report holds on our data: numbers in, a verdict out.
 //!
-//! A claim is taken apart into cases that can be checked one by one. All cases: it holds; none: it does not; some: it
-//! holds partly. Speeds that differ by less than [`NOISE`] count as equal.
+//! A claim is taken apart into cases that can be checked one by one. A comparison of speeds that lies within the
+//! [`Noise`] is open. Open cases are left out; where more than half are open the claim cannot be told. Of the others:
+//! all hold, and the claim holds; none, and it does not; some, and it holds partly.
 
 use super::text::{count, list, times};
 
-/// Speeds that differ by less than this part cannot be told apart.
-pub(crate) const NOISE: f64 = 0.05;
+/// A ratio of speeds that is further from 1 than this is a major or noticeable change.
+pub(crate) const MAJOR: f64 = 1.15;
+
+/// Which of two speeds is higher.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Order {
+    Faster,
+    Equal,
+    Slower,
+}
+
+/// The part by which two measurements of the same thing may differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Noise(pub(crate) f64);
+
+impl Noise {
+    /// The least that is assumed, whatever the records say.
+    pub(crate) const LEAST: Self = Self(0.05);
+
+    /// A speed in proportion to another.
+    pub(crate) fn order(self, ratio: f64) -> Order {
+        let limit = 1.0 + self.0;
+        match ratio {
+            ratio if ratio > limit => Order::Faster,
+            ratio if ratio * limit < 1.0 => Order::Slower,
+            _ => Order::Equal,
+        }
+    }
+
+    /// Is it faster?
+    pub(crate) fn faster(self, ratio: f64) -> Case {
+        match self.order(ratio) {
+            Order::Faster => Case::Yes,
+            Order::Equal => Case::Open,
+            Order::Slower => Case::No,
+        }
+    }
+
+    /// Is it slower?
+    pub(crate) fn slower(self, ratio: f64) -> Case {
+        self.faster(1.0 / ratio)
+    }
+
+    /// Is it faster by more than [`MAJOR`]?
+    pub(crate) fn much_faster(self, ratio: f64) -> Case {
+        match self.order(ratio) {
+            Order::Equal if ratio > MAJOR => Case::Open,
+            _ => Case::from(ratio > MAJOR),
+        }
+    }
+
+    /// Do they differ by no more than [`MAJOR`]?
+    pub(crate) fn alike(self, ratio: f64) -> Case {
+        match self.much_faster(ratio.max(1.0 / ratio)) {
+            Case::Yes => Case::No,
+            Case::No => Case::Yes,
+            Case::Open => Case::Open,
+        }
+    }
+}
+
+/// Whether a part of a claim holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Case {
+    Yes,
+    No,
+    /// Within the noise.
+    Open,
+}
+
+impl From<bool> for Case {
+    fn from(holds: bool) -> Self {
+        if holds { Self::Yes } else { Self::No }
+    }
+}
 
 /// The answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,16 +88,23 @@ pub(crate) enum Answer {
     Holds,
     Partly,
     Fails,
+    Open,
+    NoClaim,
     NotMeasured,
 }
 
 impl Answer {
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Holds, Self::Partly, Self::Fails, Self::Open, Self::NoClaim, Self::NotMeasured];
+
     /// In words.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Holds => "holds",
             Self::Partly => "holds partly",
             Self::Fails => "does not hold",
+            Self::Open => "cannot be told",
+            Self::NoClaim => "no claim",
             Self::NotMeasured => "not measured",
         }
     }
@@ -39,15 +120,24 @@ pub(crate) struct Verdict {
 
 impl Verdict {
     /// By the cases that were checked.
-    pub(crate) fn of(cases: &[bool], because: String) -> Self {
-        let held = cases.iter().filter(|case| **case).count();
-        let answer = match held {
+    pub(crate) fn of(cases: &[Case], because: String) -> Self {
+        let of = |wanted: Case| cases.iter().filter(|case| **case == wanted).count();
+        let (yes, no, open) = (of(Case::Yes), of(Case::No), of(Case::Open));
+        let answer = match (yes, no) {
             _ if cases.is_empty() => return Self::not_measured(),
-            0 => Answer::Fails,
-            held if held == cases.len() => Answer::Holds,
+            _ if 2 * open > cases.len() => Answer::Open,
+            (_, 0) => Answer::Holds,
+            (0, _) => Answer::Fails,
             _ => Answer::Partly,
         };
-        Self { answer, because }
+        let counted =
+            format!("{} Checks: {yes} hold, {no} do not, {open} cannot be told.", because.trim_end());
+        Self { answer, because: counted }
+    }
+
+    /// For a figure with which nothing is claimed.
+    pub(crate) fn no_claim(because: String) -> Self {
+        Self { answer: Answer::NoClaim, because }
     }
 
     /// For a study that was stopped, or measured something else.
@@ -60,36 +150,50 @@ impl Verdict {
 /// A speed or ratio at a number of spheres.
 pub(crate) type AtCount = (u32, f64);
 
-/// The smallest number of spheres from which on a ratio of speeds is always above 1; the pairs rise in their count.
-pub(crate) fn crossover(ratios: &[AtCount]) -> Option<u32> {
-    let wins = ratios.iter().rev().take_while(|(_, ratio)| *ratio > 1.0);
-    wins.last().map(|(count, _)| *count)
+/// From where on a structure always wins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Crossover {
+    /// The largest number of spheres at which it does not.
+    pub(crate) not_at: Option<u32>,
+    /// The smallest from which on it does.
+    pub(crate) from: Option<u32>,
+}
+
+/// The crossover of ratios of speeds that rise in their count.
+pub(crate) fn crossover(noise: Noise, ratios: &[AtCount]) -> Crossover {
+    let is_faster = |(_, ratio): &&AtCount| noise.order(*ratio) == Order::Faster;
+    let wins = ratios.iter().rev().take_while(is_faster).count();
+    let (before, won) = ratios.split_at(ratios.len() - wins);
+    Crossover { not_at: before.last().map(|(count, _)| *count), from: won.first().map(|(count, _)| *count) }
 }
 
 /// The crossover in words.
-pub(crate) fn crossover_text(ratios: &[AtCount]) -> String {
-    match (crossover(ratios), ratios.first()) {
-        (_, None) => "not measured".to_owned(),
-        (None, _) => "never, up to what was measured".to_owned(),
-        (Some(from), Some((first, _))) if from == *first => {
-            format!("from {from} spheres, the fewest that were measured")
+pub(crate) fn crossover_text(noise: Noise, ratios: &[AtCount]) -> String {
+    let said = |spheres: u32| count(u64::from(spheres));
+    match crossover(noise, ratios) {
+        Crossover { not_at: None, from: None } => "not measured".to_owned(),
+        Crossover { not_at: Some(last), from: None } => {
+            format!("not up to {} spheres, the most that were measured", said(last))
         }
-        (Some(from), _) => format!("from {from} spheres"),
+        Crossover { not_at: None, from: Some(from) } => {
+            format!("at {} spheres, the fewest that were measured, and from there on", said(from))
+        }
+        Crossover { not_at: Some(last), from: Some(from) } => {
+            format!("between {} and {} spheres", said(last), said(from))
+        }
     }
 }
 
-/// Whether a quantity grows along its pairs: `(it never falls by more than the noise, its end is above its start)`.
-pub(crate) fn growth(pairs: &[AtCount]) -> Option<(bool, bool)> {
-    let ((_, first), (_, last)) = (pairs.first()?, pairs.last()?);
-    let never_falls = pairs.windows(2).all(|pair| pair[1].1 >= pair[0].1 * (1.0 - NOISE));
-    (pairs.len() > 1).then_some((never_falls, last > &(first * (1.0 + NOISE))))
-}
-
-/// The smallest setting whose speed is within the noise of the best; pairs of (setting, speed).
-pub(crate) fn best_setting(speeds: &[(u32, f64)]) -> Option<u32> {
-    let best = speeds.iter().map(|(_, speed)| *speed).fold(0.0, f64::max);
-    let good = speeds.iter().filter(|(_, speed)| *speed >= best * (1.0 - NOISE));
-    good.map(|(setting, _)| *setting).min()
+/// Whether a quantity grows along its pairs: its end is above its start, and it never falls.
+pub(crate) fn growth(noise: Noise, pairs: &[AtCount]) -> Vec<Case> {
+    let (Some((_, first)), Some((_, last))) = (pairs.first(), pairs.last()) else { return Vec::new() };
+    if pairs.len() < 2 {
+        return Vec::new();
+    }
+    let falls = pairs.windows(2).any(|pair| noise.order(pair[1].1 / pair[0].1) == Order::Slower);
+    let mut cases = vec![noise.faster(last / first)];
+    cases.extend(falls.then_some(Case::No));
+    cases
 }
 
 /// How far values lie apart: the largest over the smallest; `None` for none.
@@ -98,8 +202,22 @@ pub(crate) fn spread(values: &[f64]) -> Option<f64> {
     Some(values.iter().copied().fold(least, f64::max) / least)
 }
 
-/// Ratios at their counts as `1.2× at 10, 3× at 50`.
+/// Ratios as `1.2× to 3×`.
+pub(crate) fn range_text(ratios: &[f64]) -> String {
+    let least = ratios.iter().copied().reduce(f64::min);
+    let most = ratios.iter().copied().reduce(f64::max);
+    match (least.map(times), most.map(times)) {
+        (Some(least), Some(most)) if least == most => least,
+        (Some(least), Some(most)) => format!("{least} to {most}"),
+        _ => "not measured".to_owned(),
+    }
+}
+
+/// Ratios at their counts: all of a few, the range of many.
 pub(crate) fn ratios_text(ratios: &[AtCount]) -> String {
+    if ratios.len() > 3 {
+        return range_text(&ratios.iter().map(|(_, ratio)| *ratio).collect::<Vec<_>>());
+    }
     list(ratios.iter().map(|(spheres, ratio)| format!("{} at {}", times(*ratio), count(u64::from(*spheres)))))
 }
 
@@ -107,39 +225,66 @@ pub(crate) fn ratios_text(ratios: &[AtCount]) -> String {
 mod tests {
     use super::*;
 
+    const NOISE: Noise = Noise(0.1);
+
     #[test]
     fn cases_decide() {
-        let of = |cases: &[bool]| Verdict::of(cases, "x".to_owned()).answer;
-        assert_eq!(of(&[true, true]), Answer::Holds);
-        assert_eq!(of(&[true, false]), Answer::Partly);
-        assert_eq!(of(&[false]), Answer::Fails);
+        let of = |cases: &[Case]| Verdict::of(cases, "x".to_owned()).answer;
+        assert_eq!(of(&[Case::Yes, Case::Yes]), Answer::Holds);
+        assert_eq!(of(&[Case::Yes, Case::No]), Answer::Partly);
+        assert_eq!(of(&[Case::No]), Answer::Fails);
+        assert_eq!(of(&[Case::Yes, Case::Open]), Answer::Holds);
+        assert_eq!(of(&[Case::No, Case::Open]), Answer::Fails);
+        assert_eq!(of(&[Case::No, Case::Open, Case::Open]), Answer::Open);
         assert_eq!(of(&[]), Answer::NotMeasured);
+        assert!(Verdict::of(&[Case::Yes, Case::Open], String::new()).because.contains("1 cannot be told"));
+    }
+
+    #[test]
+    fn a_speed_within_the_noise_is_neither_faster_nor_slower() {
+        let orders = [1.11, 1.09, 1.0, 1.0 / 1.09, 1.0 / 1.11].map(|ratio| NOISE.order(ratio));
+        use Order::{Equal, Faster, Slower};
+        assert_eq!(orders, [Faster, Equal, Equal, Equal, Slower]);
+        assert_eq!([2.0, 1.05, 0.5].map(|r| NOISE.faster(r)), [Case::Yes, Case::Open, Case::No]);
+        assert_eq!([2.0, 1.05, 0.5].map(|r| NOISE.slower(r)), [Case::No, Case::Open, Case::Yes]);
+        assert_eq!([2.0, 1.12, 0.5].map(|r| NOISE.much_faster(r)), [Case::Yes, Case::No, Case::No]);
+        assert_eq!([2.0, 1.12, 0.5].map(|r| NOISE.alike(r)), [Case::No, Case::Yes, Case::No]);
+        assert_eq!(
+            [2.0, 1.2, 1.0, 0.8].map(|r| Noise(0.3).alike(r)),
+            [Case::No, Case::Open, Case::Yes, Case::Open]
+        );
     }
 
     #[test]
     fn the_crossover_is_where_the_winning_never_stops() {
-        assert_eq!(crossover(&[(10, 0.8), (50, 1.2), (100, 0.9), (250, 1.1), (500, 2.0)]), Some(250));
-        assert_eq!(crossover(&[(10, 1.1), (50, 1.2)]), Some(10));
-        assert_eq!(crossover(&[(10, 1.1), (50, 1.0)]), None);
-        assert_eq!(crossover(&[]), None);
-        assert_eq!(crossover_text(&[(10, 0.5), (50, 2.0)]), "from 50 spheres");
-        assert_eq!(crossover_text(&[(10, 2.0)]), "from 10 spheres, the fewest that were measured");
-        assert!(crossover_text(&[(10, 0.5)]).starts_with("never"));
+        let of = |ratios: &[AtCount]| {
+            let Crossover { not_at, from } = crossover(NOISE, ratios);
+            (not_at, from)
+        };
+        let ups_and_downs = [(10, 0.8), (50, 1.2), (100, 0.9), (250, 1.2), (500, 2.0)];
+        assert_eq!(of(&ups_and_downs), (Some(100), Some(250)));
+        assert_eq!(of(&[(10, 1.2), (50, 1.2)]), (None, Some(10)));
+        assert_eq!(of(&[(10, 1.2), (50, 1.05)]), (Some(50), None));
+        assert_eq!(of(&[]), (None, None));
+        let text = |ratios: &[AtCount]| crossover_text(NOISE, ratios);
+        assert_eq!(text(&[(10, 1.008), (50, 2.0)]), "between 10 and 50 spheres");
+        assert!(text(&[(10, 2.0)]).starts_with("at 10 spheres, the fewest"));
+        assert!(text(&[(10, 0.5)]).starts_with("not up to 10"));
     }
 
     #[test]
     fn growth_forgives_noise_only() {
-        assert_eq!(growth(&[(1, 1.0), (2, 0.97), (3, 2.0)]), Some((true, true)));
-        assert_eq!(growth(&[(1, 1.0), (2, 0.9), (3, 2.0)]), Some((false, true)));
-        assert_eq!(growth(&[(1, 1.0), (2, 1.01)]), Some((true, false)));
-        assert_eq!(growth(&[(1, 1.0)]), None);
+        assert_eq!(growth(NOISE, &[(1, 1.0), (2, 0.97), (3, 2.0)]), [Case::Yes]);
+        assert_eq!(growth(NOISE, &[(1, 1.0), (2, 0.8), (3, 2.0)]), [Case::Yes, Case::No]);
+        assert_eq!(growth(NOISE, &[(1, 1.0), (2, 1.01)]), [Case::Open]);
+        assert_eq!(growth(NOISE, &[(1, 2.0), (2, 1.0)]), [Case::No, Case::No]);
+        assert!(growth(NOISE, &[(1, 1.0)]).is_empty());
     }
 
     #[test]
-    fn of_equal_settings_the_smallest_is_best() {
-        assert_eq!(best_setting(&[(0, 10.0), (1, 97.0), (2, 100.0), (3, 40.0)]), Some(1));
-        assert_eq!(best_setting(&[(0, 10.0), (1, 90.0), (2, 100.0)]), Some(2));
-        assert_eq!(best_setting(&[]), None);
+    fn many_ratios_are_a_range() {
+        assert_eq!(ratios_text(&[(10, 1.5), (2000, 3.0)]), "1.5× at 10 and 3× at 2,000");
+        assert_eq!(ratios_text(&[(1, 1.5), (2, 3.0), (3, 0.5), (4, 1.0)]), "0.5× to 3×");
         assert_eq!((spread(&[2.0, 1.0, 4.0]), spread(&[])), (Some(4.0), None));
     }
 }

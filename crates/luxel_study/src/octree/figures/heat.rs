@@ -1,10 +1,15 @@
 //! Figures 7 and 8: which setting matters most.
+//!
+//! The settings are varied over different ranges (height little, spheres much), so that their effects on the frames
+//! per second cannot be compared as they are. Each is given for one doubling: the slope of least squares of the
+//! logarithms.
 use super::super::figure::{Figure, Heat, Part};
 use super::super::record::{Run, Sweep};
 use super::super::select::{NAIVE, OURS, REPORTS, Runs, backend_name, label};
-use super::super::stats::correlation;
-use super::super::text::short;
-use super::super::verdict::Verdict;
+use super::super::stats::factor_per_doubling;
+use super::super::text::{count, times};
+use super::super::verdict::{Case, Verdict};
+use super::count_names;
 
 pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     vec![figure(runs, 7, "Naive heat map", &[NAIVE]), figure(runs, 8, "Octree heat map", &[OURS, REPORTS])]
@@ -17,16 +22,11 @@ fn figure(runs: &Runs<'_>, number: u32, title: &str, structures: &[&str]) -> Fig
     for backend in grid.backends() {
         for structure in structures {
             let runs = grid.on(backend).with(structure);
-            if !runs.is_empty() {
-                parts.push(Part::Heat(heat(
-                    &runs,
-                    format!("{}, {}", label(structure), backend_name(backend)),
-                )));
-            }
-            if let Some((case, reason)) = impact(&runs) {
-                cases.push(case);
-                reasons.push(format!("{structure} on the {}: {reason}.", backend_name(backend)));
-            }
+            let Some((case, reason)) = impact(&runs) else { continue };
+            let caption = format!("{}, {}", label(structure), backend_name(backend));
+            parts.push(Part::Heat(heat(&runs, caption)));
+            cases.push(case);
+            reasons.push(format!("{structure} on the {}: {reason}.", backend_name(backend)));
         }
     }
     Figure {
@@ -34,27 +34,46 @@ fn figure(runs: &Runs<'_>, number: u32, title: &str, structures: &[&str]) -> Fig
         title: title.to_owned(),
         shows: "Frames per second by picture height and samples (down) and number of spheres (across); dark is fast."
             .to_owned(),
-        claim: "Of screen height, samples and number of spheres, screen height has the biggest impact.".to_owned(),
+        claim: Some(
+            "Of screen height, samples and number of spheres, screen height has the biggest impact (judged for one \
+             doubling of each)."
+                .to_owned(),
+        ),
         verdict: Verdict::of(&cases, reasons.join(" ")),
         parts,
     }
 }
 
-/// Whether height is correlated with the speed most strongly; the correlations in words.
-fn impact(runs: &Runs<'_>) -> Option<(bool, String)> {
-    let of = |setting: fn(&Run) -> f64| {
-        correlation(&runs.iter().map(|run| (setting(run), run.fps)).collect::<Vec<_>>())
+/// A setting that is varied.
+struct Setting {
+    name: &'static str,
+    of: fn(&Run) -> u32,
+}
+
+const HEIGHT: Setting = Setting { name: "of height (four times the pixels)", of: |run| run.height };
+const SAMPLES: Setting = Setting { name: "of samples, with their depth", of: |run| run.spp };
+const SPHERES: Setting = Setting { name: "of spheres", of: |run| run.spheres };
+
+/// Whether doubling the height slows most; the effects in words.
+fn impact(runs: &Runs<'_>) -> Option<(Case, String)> {
+    let factor = |setting: &Setting| {
+        let pairs: Vec<(f64, f64)> = runs.iter().map(|run| (f64::from((setting.of)(run)), run.fps)).collect();
+        factor_per_doubling(&pairs)
     };
-    let height = of(|run| f64::from(run.height))?;
-    let samples = of(|run| f64::from(run.spp))?;
-    let spheres = of(|run| f64::from(run.spheres))?;
+    let factors = [factor(&HEIGHT)?, factor(&SAMPLES)?, factor(&SPHERES)?];
+    let said = |setting: &Setting, factor: f64| {
+        let values = runs.values(|run| (setting.of)(run));
+        let end = |value: Option<&u32>| count(u64::from(value.copied().unwrap_or_default()));
+        format!("{} ({} to {}) {}", setting.name, end(values.first()), end(values.last()), times(factor))
+    };
     let text = format!(
-        "the correlation with frames per second is {} for height, {} for samples, {} for spheres",
-        short(height),
-        short(samples),
-        short(spheres)
+        "the speed becomes with a doubling {}, {} and {}",
+        said(&HEIGHT, factors[0]),
+        said(&SAMPLES, factors[1]),
+        said(&SPHERES, factors[2])
     );
-    Some((height.abs() > samples.abs().max(spheres.abs()), text))
+    let [height, samples, spheres] = factors.map(|factor| factor.max(1.0 / factor));
+    Some((runs.noise().faster(height / samples.max(spheres)), text))
 }
 
 fn heat(runs: &Runs<'_>, caption: String) -> Heat {
@@ -67,8 +86,7 @@ fn heat(runs: &Runs<'_>, caption: String) -> Heat {
             rows.push((format!("{height} px, {spp} samples ({quality})"), counts.iter().map(cell).collect()));
         }
     }
-    let columns = counts.iter().map(|count| super::super::text::count(u64::from(*count))).collect();
-    Heat { caption, corner: "height, samples ╲ spheres", columns, rows }
+    Heat { caption, corner: "height, samples ╲ spheres", columns: count_names(&counts), rows }
 }
 
 #[cfg(test)]
@@ -76,12 +94,15 @@ mod tests {
     use super::super::super::record::example;
     use super::*;
 
-    fn grid(fps: impl Fn(f64, f64, f64) -> f64) -> Vec<Run> {
+    /// Powers of height, samples and spheres.
+    fn grid(powers: [f64; 3]) -> Vec<Run> {
         let mut runs = Vec::new();
-        for height in [100, 200, 300] {
-            for spp in [4, 16, 32] {
-                for spheres in [10, 100, 1000] {
-                    let fps = fps(f64::from(height), f64::from(spp), f64::from(spheres));
+        for height in [24u32, 48] {
+            for spp in [4u32, 16, 32] {
+                for spheres in [10u32, 100, 1000] {
+                    let settings = [height, spp, spheres].map(f64::from);
+                    let fps =
+                        1e5 * settings.iter().zip(powers).map(|(x, power)| x.powf(power)).product::<f64>();
                     runs.push(Run { sweep: Sweep::Grid, height, spp, spheres, fps, ..example() });
                 }
             }
@@ -90,10 +111,12 @@ mod tests {
     }
 
     #[test]
-    fn the_setting_that_matters_is_found() {
-        let by_height = grid(|height, spp, spheres| 1e3 - 3.0 * height - 0.1 * spp - 0.01 * spheres);
-        assert!(impact(&Runs::all(&by_height)).unwrap().0);
-        let by_samples = grid(|height, spp, spheres| 1e3 - 0.1 * height - 30.0 * spp - 0.01 * spheres);
-        assert!(!impact(&Runs::all(&by_samples)).unwrap().0);
+    fn the_setting_that_matters_is_found_whatever_its_range() {
+        let case = |powers| impact(&Runs::all(&grid(powers))).unwrap().0;
+        assert_eq!(case([-2.0, -1.0, -0.9]), Case::Yes);
+        assert_eq!(case([-1.0, -2.0, -0.1]), Case::No);
+        assert_eq!(case([-1.0, -0.5, -1.0]), Case::Open);
+        let text = impact(&Runs::all(&grid([-2.0, -1.0, 0.0]))).unwrap().1;
+        assert!(text.contains("(24 to 48) 0.25×") && text.contains("(10 to 1,000) 1×"), "{text}");
     }
 }

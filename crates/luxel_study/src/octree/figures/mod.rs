@@ -1,19 +1,29 @@
 //! The figures, from records alone: what each shows, what the report claims with it, and whether that holds.
+mod best;
 mod depth;
 mod extra;
 mod heat;
+mod heights;
 mod large;
 mod leaves;
 mod orders;
 mod pictures;
+mod small_depth;
+#[cfg(test)]
+mod tests;
 mod versus;
+mod wrong;
 
-use super::chart::{Chart, Kind, Series};
-use super::figure::{Figure, Part};
-use super::select::Runs;
+use super::chart::{Chart, Ink, Kind, Series};
+use super::figure::{Figure, Part, Table};
+use super::select::{Runs, STRUCTURES, backend_name, label};
+use super::text::{count, times};
+use super::verdict::AtCount;
 
 /// The last figure of the report.
 pub(crate) const LAST_OF_REPORT: u32 = 21;
+/// Deeper octrees have the last colour of the scale.
+const DEEPEST_INK: f64 = 10.0;
 
 /// Every figure, in the order of their numbers.
 pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
@@ -21,8 +31,11 @@ pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     figures.push(orders::figure());
     figures.extend(heat::figures(runs));
     figures.extend(versus::figures(runs));
+    figures.extend(heights::figures(runs));
     figures.extend(depth::figures(runs));
+    figures.extend(small_depth::figures(runs));
     figures.extend(leaves::figures(runs));
+    figures.push(wrong::figure(runs));
     figures.extend(extra::figures(runs));
     figures.extend(large::figures(runs));
     figures.sort_by_key(|figure| figure.number);
@@ -30,8 +43,88 @@ pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
 }
 
 /// A series over numbers of spheres, or any other setting.
-fn series<T: Copy>(name: impl Into<String>, over: &[T], value: impl Fn(T) -> Option<f64>) -> Series {
-    Series { name: name.into(), values: over.iter().map(|x| value(*x)).collect() }
+fn series<T: Copy>(
+    name: impl Into<String>,
+    ink: Ink,
+    over: &[T],
+    value: impl Fn(T) -> Option<f64>,
+) -> Series {
+    Series { name: name.into(), ink, values: over.iter().map(|x| value(*x)).collect() }
+}
+
+/// The colour of a structure, with gaps on the GPU.
+fn structure_ink(structure: &str, backend: &str) -> Ink {
+    let index = STRUCTURES.iter().position(|name| *name == structure).unwrap_or(STRUCTURES.len());
+    Ink::distinct(index).dashed(backend == "gpu")
+}
+
+/// The colour of a depth.
+fn depth_ink(depth: u32) -> Ink {
+    Ink::scale(f64::from(depth) / DEEPEST_INK)
+}
+
+/// A line per structure of one backend.
+fn structure_lines<T: Copy>(
+    runs: &Runs<'_>,
+    over: &[T],
+    value: impl Fn(&Runs<'_>, T) -> Option<f64>,
+) -> Vec<Series> {
+    let backend = runs.first().map_or("cpu", |run| run.backend.as_str());
+    let line = |name: &'static str| {
+        let of_it = runs.with(name);
+        series(label(name), structure_ink(name, backend), over, |x| value(&of_it, x))
+    };
+    runs.structures().into_iter().map(line).collect()
+}
+
+/// A structure's speed against another's, by the number of spheres, on one backend.
+struct Ratios {
+    structure: &'static str,
+    backend: String,
+    ratios: Vec<AtCount>,
+}
+
+impl Ratios {
+    fn name(&self) -> String {
+        format!("{} on the {}", self.structure, backend_name(&self.backend))
+    }
+
+    fn at(&self, count: u32) -> Option<f64> {
+        self.ratios.iter().find(|(c, _)| *c == count).map(|(_, ratio)| *ratio)
+    }
+
+    fn line(&self, counts: &[u32]) -> Series {
+        series(self.name(), structure_ink(self.structure, &self.backend), counts, |count| self.at(count))
+    }
+}
+
+/// How many times faster structures are than another, for each backend.
+fn ratios_of(runs: &Runs<'_>, structures: &[&'static str], slow: &str) -> Vec<Ratios> {
+    let mut all = Vec::new();
+    for backend in runs.backends() {
+        for &structure in structures {
+            let ratios = runs.on(backend).ratios(structure, slow);
+            if !ratios.is_empty() {
+                all.push(Ratios { structure, backend: backend.to_owned(), ratios });
+            }
+        }
+    }
+    all
+}
+
+/// Ratios over columns as a table.
+fn ratio_table(corner: &str, columns: Vec<String>, rows: Vec<(String, Vec<Option<f64>>)>) -> Part {
+    let said = |ratio: Option<f64>| ratio.map_or_else(|| "–".to_owned(), times);
+    let row = |(name, ratios): (String, Vec<Option<f64>>)| {
+        std::iter::once(name).chain(ratios.into_iter().map(said)).collect()
+    };
+    let head = std::iter::once(corner.to_owned()).chain(columns).collect();
+    Part::Table(Table { head, rows: rows.into_iter().map(row).collect() })
+}
+
+/// Numbers of spheres as categories.
+fn count_names(counts: &[u32]) -> Vec<String> {
+    counts.iter().map(|spheres| count(u64::from(*spheres))).collect()
 }
 
 /// Frames per second over numbers of spheres, as lines.
@@ -47,125 +140,6 @@ fn over_counts(
     is_log: bool,
     series: Vec<Series>,
 ) -> Part {
-    let categories = counts.iter().map(|count| super::text::count(u64::from(*count))).collect();
+    let categories = count_names(counts);
     Part::Chart(Chart { caption, kind, x: "number of spheres", y, is_log, categories, series, level: None })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::record::{Run, Sweep, example};
-    use super::super::verdict::Answer;
-    use super::*;
-
-    fn answer(runs: &[Run], number: u32) -> Answer {
-        figures(&Runs::all(runs)).iter().find(|figure| figure.number == number).unwrap().verdict.answer
-    }
-
-    /// Runs of a sweep: structure, spheres, depth, smallest node, frames per second.
-    fn made(sweep: Sweep, rows: &[(&str, u32, u32, u32, f64)]) -> Vec<Run> {
-        let run = |&(structure, spheres, depth, min_spheres, fps): &(&str, u32, u32, u32, f64)| Run {
-            sweep,
-            structure: structure.to_owned(),
-            spheres,
-            asked_depth: depth,
-            max_depth: depth.min(20),
-            min_spheres,
-            fps,
-            frame_ms: 1e3 / fps,
-            ..example()
-        };
-        rows.iter().map(run).collect()
-    }
-
-    #[test]
-    fn every_number_is_there_once_and_says_something_even_without_runs() {
-        let all = figures(&Runs::all(&[]));
-        let numbers: Vec<u32> = all.iter().map(|figure| figure.number).collect();
-        let expected: Vec<u32> = (1..=numbers.len() as u32).collect();
-        assert!(numbers == expected && numbers.len() as u32 > LAST_OF_REPORT, "{numbers:?}");
-        for figure in &all {
-            assert!(!figure.title.is_empty() && !figure.shows.is_empty() && !figure.claim.is_empty());
-            assert!(!figure.verdict.because.is_empty());
-            let measured = figure.verdict.answer != Answer::NotMeasured;
-            assert_eq!(measured, figure.number == 3, "figure {}", figure.number);
-        }
-    }
-
-    #[test]
-    fn a_growing_advantage_holds_and_a_shrinking_one_does_not() {
-        let runs = |late: f64| {
-            let mut rows = Vec::new();
-            for (count, ratio) in [(500, 2.0), (1000, 4.0), (2000, late)] {
-                rows.push(("naive", count, 20, 8, 10.0));
-                rows.push(("octree-seed", count, 6, 1, 10.0 * ratio));
-                rows.push(("octree", count, 20, 8, 10.0 * ratio));
-            }
-            made(Sweep::Counts, &rows)
-        };
-        assert_eq!(answer(&runs(8.0), 12), Answer::Holds);
-        assert_eq!(answer(&runs(1.0), 12), Answer::Fails);
-        assert_eq!(answer(&runs(3.0), 12), Answer::Partly);
-        assert_eq!(answer(&runs(8.0), 11), Answer::Holds);
-    }
-
-    #[test]
-    fn the_best_depth_must_grow() {
-        let runs = |small: u32, large: u32| {
-            let mut rows = Vec::new();
-            for (count, best) in [(10, small), (2000, large)] {
-                for depth in 0..=5 {
-                    for structure in ["octree", "octree-seed"] {
-                        let fps = if depth == best { 100.0 } else { 50.0 };
-                        rows.push((structure, count, depth, 1, fps));
-                    }
-                }
-            }
-            made(Sweep::Depth, &rows)
-        };
-        assert_eq!((answer(&runs(1, 4), 15), answer(&runs(1, 4), 27)), (Answer::Holds, Answer::Holds));
-        assert_eq!((answer(&runs(4, 1), 15), answer(&runs(4, 1), 27)), (Answer::Fails, Answer::Fails));
-    }
-
-    #[test]
-    fn one_sphere_per_node_must_beat_none() {
-        let runs = |with_one: f64| {
-            let mut rows = Vec::new();
-            for count in [250, 500, 1000] {
-                for structure in ["octree", "octree-seed"] {
-                    rows.push((structure, count, 3, 0, 100.0));
-                    rows.push((structure, count, 3, 1, with_one));
-                }
-            }
-            made(Sweep::Depth, &rows)
-        };
-        assert_eq!(answer(&runs(150.0), 20), Answer::Holds);
-        assert_eq!(answer(&runs(50.0), 20), Answer::Fails);
-    }
-
-    #[test]
-    fn depth_beyond_need_must_change_nothing() {
-        let runs = |double: f64| {
-            let mut rows = Vec::new();
-            for structure in ["octree", "octree-seed"] {
-                for (depth, fps) in [(50, 100.0), (100, 98.0), (200, double)] {
-                    rows.push((structure, 100, depth, 1, fps));
-                }
-            }
-            made(Sweep::Fraction, &rows)
-        };
-        assert_eq!(answer(&runs(97.0), 16), Answer::Holds);
-        assert_eq!(answer(&runs(40.0), 16), Answer::Fails);
-    }
-
-    #[test]
-    fn wrong_pixels_are_reported_as_they_are() {
-        let runs = |wrong: f64| {
-            let mut runs =
-                made(Sweep::Counts, &[("octree-seed", 100, 5, 1, 90.0), ("octree", 100, 20, 8, 80.0)]);
-            runs[0].wrong_pixels = Some(wrong);
-            runs
-        };
-        assert_eq!(answer(&runs(0.04), 22), Answer::Holds);
-        assert_eq!(answer(&runs(0.0), 22), Answer::Fails);
-    }
 }

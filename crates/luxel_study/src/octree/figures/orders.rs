@@ -7,7 +7,7 @@
 //! other in all of them.
 use super::super::figure::{Figure, Part, Table};
 use super::super::text::list;
-use super::super::verdict::Verdict;
+use super::super::verdict::{Case, Verdict};
 
 /// The report's order for the red direction of its figure 3, in its numbering (bits z, x, y).
 const REPORTS_RED_ORDER: [u32; 8] = [3, 1, 2, 0, 7, 5, 6, 4];
@@ -43,10 +43,12 @@ pub(crate) fn figure() -> Figure {
         shows: "A ray enters a node from one of eight octants; the cell at that corner is visited first, the opposite \
                 one last."
             .to_owned(),
-        claim: "For the 26 kinds of ray directions 8 visiting orders are enough to check the children of a node from \
-                closest to farthest."
-            .to_owned(),
-        verdict: Verdict::of(&[sound == 8, reports, corners], because),
+        claim: Some(
+            "For the 26 kinds of ray directions 8 visiting orders are enough to check the children of a node from \
+             closest to farthest."
+                .to_owned(),
+        ),
+        verdict: Verdict::of(&[sound == 8, reports, corners].map(Case::from), because),
         parts: vec![Part::Cube, Part::Table(table(&ours))],
     }
 }

@@ -19,17 +19,18 @@ fn picture(run: Option<&Run>, alt: &str) -> Vec<Part> {
     picture.map(|png| Part::Picture(png, alt.to_owned())).into_iter().collect()
 }
 
-/// Light left all three materials.
-fn material_verdict(run: Option<&Run>) -> Verdict {
-    let Some(run) = run else { return Verdict::not_measured() };
-    let bounces = [run.lambert_bounces, run.metal_bounces, run.dielectric_bounces];
-    let [lambert, metal, dielectric] = bounces.map(short);
-    Verdict::of(
-        &bounces.map(|count| count > 0.0),
-        format!(
-            "A frame has {lambert} bounces off Lambert, {metal} off metal and {dielectric} off dielectric surfaces."
-        ),
-    )
+/// What light met in a frame; `None` without a run.
+fn bounces_text(run: Option<&Run>) -> Option<String> {
+    let run = run?;
+    let [lambert, metal, dielectric] =
+        [run.lambert_bounces, run.metal_bounces, run.dielectric_bounces].map(short);
+    Some(format!(
+        "A frame has {lambert} bounces off Lambert, {metal} off metal and {dielectric} off dielectric surfaces."
+    ))
+}
+
+fn without_claim(because: Option<String>) -> Verdict {
+    because.map_or_else(Verdict::not_measured, Verdict::no_claim)
 }
 
 fn materials(runs: &Runs<'_>) -> Figure {
@@ -39,8 +40,8 @@ fn materials(runs: &Runs<'_>) -> Figure {
         number: 1,
         title: "The 3 used materials. From left to right: Lambert, Metal, Dielectric".to_owned(),
         shows: format!("A diffuse, a metal and a glass sphere under our sky ({}).", setting(run)),
-        claim: "Spheres of three materials, Lambert, metal and dielectric, can be told apart.".to_owned(),
-        verdict: material_verdict(run),
+        claim: None,
+        verdict: without_claim(bounces_text(run)),
         parts: picture(run, "three spheres: matt red, golden metal, clear glass"),
     }
 }
@@ -48,7 +49,6 @@ fn materials(runs: &Runs<'_>) -> Figure {
 fn scene(runs: &Runs<'_>) -> Figure {
     let runs = runs.of(Sweep::Scene);
     let run = runs.first();
-    let is_it = run.is_some_and(|run| run.spheres == 100);
     Figure {
         number: 2,
         title: "Example of the random scene with 100 spheres".to_owned(),
@@ -56,8 +56,8 @@ fn scene(runs: &Runs<'_>) -> Figure {
             "Random spheres of the three materials in a box, the scene of all measurements ({}).",
             setting(run)
         ),
-        claim: "A random scene of N spheres of three materials is diverse enough to measure with.".to_owned(),
-        verdict: material_verdict(run.filter(|_| is_it)),
+        claim: None,
+        verdict: without_claim(bounces_text(run)),
         parts: picture(run, "a hundred random spheres in front of the sky"),
     }
 }
@@ -66,6 +66,7 @@ fn quality(runs: &Runs<'_>, (number, name, samples, depth): (u32, &str, u32, u32
     let runs = runs.of(Sweep::Quality);
     let of = |name: &str| runs.iter().find(|run| run.quality == name);
     let run = of(name);
+    let below = QUALITIES.iter().take_while(|row| row.1 != name).last().and_then(|row| of(row.1));
     let mut title = name.to_owned();
     title[..1].make_ascii_uppercase();
     Figure {
@@ -74,34 +75,18 @@ fn quality(runs: &Runs<'_>, (number, name, samples, depth): (u32, &str, u32, u32
         shows: format!(
             "The same scene at {samples} samples per pixel and ray depth {depth}: how clean the picture becomes."
         ),
-        claim: format!(
-            "{title} quality ({samples} samples, depth {depth}) costs more than the level below and has less noise."
-        ),
-        verdict: quality_verdict(
-            run,
-            QUALITIES.iter().take_while(|row| row.1 != name).last().and_then(|row| of(row.1)),
-        ),
+        claim: None,
+        verdict: without_claim(cost_text(run, below)),
         parts: picture(run, &format!("the scene at {name} quality")),
     }
 }
 
-fn quality_verdict(run: Option<&Run>, below: Option<&Run>) -> Verdict {
-    let Some((run, noise)) = run.and_then(|run| Some((run, run.noise?))) else {
-        return Verdict::not_measured();
-    };
-    let this = format!("A frame takes {} ms, its noise is {}", short(run.frame_ms), percent(noise));
-    match below.and_then(|below| Some((below, below.noise?))) {
-        None => Verdict::of(&[run.spp == 4, run.bounces == 4], format!("{this}; it is the lowest level.")),
-        Some((below, noise_below)) => Verdict::of(
-            &[run.frame_ms > below.frame_ms, noise < noise_below],
-            format!(
-                "{this}; at {} quality {} ms and {}.",
-                below.quality,
-                short(below.frame_ms),
-                percent(noise_below)
-            ),
-        ),
-    }
+/// Time and noise of a picture, and of the quality below it; `None` without a run.
+fn cost_text(run: Option<&Run>, below: Option<&Run>) -> Option<String> {
+    let cost = |run: &Run| Some(format!("{} ms, with noise of {}", short(run.frame_ms), percent(run.noise?)));
+    let this = cost(run?)?;
+    let below = below.and_then(|below| Some(format!(" ({} quality: {})", below.quality, cost(below)?)));
+    Some(format!("A frame takes {this}{}.", below.unwrap_or_default()))
 }
 
 #[cfg(test)]
@@ -111,19 +96,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_better_quality_is_slower_and_cleaner() {
-        let run = |frame_ms: f64, noise: f64| Run { frame_ms, noise: Some(noise), ..example() };
-        let answer = |a: &Run, b: &Run| quality_verdict(Some(a), Some(b)).answer;
-        assert_eq!(answer(&run(20.0, 0.1), &run(5.0, 0.2)), Answer::Holds);
-        assert_eq!(answer(&run(4.0, 0.1), &run(5.0, 0.2)), Answer::Partly);
-        assert_eq!(answer(&run(4.0, 0.3), &run(5.0, 0.2)), Answer::Fails);
-        assert_eq!(quality_verdict(None, Some(&run(1.0, 1.0))).answer, Answer::NotMeasured);
+    fn a_quality_is_set_beside_the_one_below() {
+        let low = Run { frame_ms: 5.0, noise: Some(0.2), quality: "low".to_owned(), ..example() };
+        let high = Run { frame_ms: 20.0, noise: Some(0.1), ..example() };
+        let text = cost_text(Some(&high), Some(&low)).unwrap();
+        assert!(text.starts_with("A frame takes 20 ms, with noise of 10 % (low quality: 5 ms"), "{text}");
+        assert_eq!(cost_text(None, Some(&low)), None);
     }
 
     #[test]
-    fn a_material_without_light_is_missed() {
-        let dark = Run { metal_bounces: 0.0, ..example() };
-        assert_eq!(material_verdict(Some(&dark)).answer, Answer::Partly);
-        assert_eq!(material_verdict(Some(&example())).answer, Answer::Holds);
+    fn pictures_claim_nothing_and_say_what_they_show() {
+        let run = Run { sweep: Sweep::Materials, ..example() };
+        let figure = materials(&Runs::all(std::slice::from_ref(&run)));
+        assert_eq!((figure.verdict.answer, figure.claim), (Answer::NoClaim, None));
+        assert!(figure.verdict.because.contains("10 off metal"));
     }
 }
