@@ -27,8 +27,8 @@ pub struct PairRay<R: Real> {
 pub struct PairHit<R: Real> {
     /// Where the ray enters each box; not below `t_min`.
     pub enter: [R; 2],
-    /// True where a hit with `t_min < t <= t_max` can lie in the box.
-    pub is_hit: [bool; 2],
+    /// Bit i is set where a hit with `t_min < t <= t_max` can lie in box i.
+    pub hits: u32,
 }
 
 impl<R: Real> PairRay<R> {
@@ -44,18 +44,20 @@ impl<R: Real> PairRay<R> {
         }
     }
 
-    /// Tests two boxes; `lo` and `hi` are the corners of the first and of the second.
+    /// Tests two boxes; `lo` and `hi` are the corners of the first and of the second, with a fourth number that says
+    /// nothing: a node's corners and links are read in one piece.
     #[inline(always)]
-    pub fn test(&self, lo: [[f32; 3]; 2], hi: [[f32; 3]; 2], t_max: R) -> PairHit<R> {
+    pub fn test(&self, lo: [[f32; 4]; 2], hi: [[f32; 4]; 2], t_max: R) -> PairHit<R> {
+        let planes = R::Lanes::columns([lo[0], lo[1], hi[0], hi[1]]);
         let slab = |axis: usize| {
-            let planes = R::Lanes::from_f32([lo[0][axis], lo[1][axis], hi[0][axis], hi[1][axis]]);
-            let t = (planes - self.origin[axis]) * self.inv_direction[axis];
+            let t = (planes[axis] - self.origin[axis]) * self.inv_direction[axis];
             (-t.halves_swapped()).min(t)
         };
         let pad = R::Lanes::from_f32([1.0, 1.0, FAR_PAD, FAR_PAD]);
         let limits = R::Lanes::from_array([self.t_min, self.t_min, -t_max, -t_max]);
         let ends = (slab(0).max(slab(1)).max(slab(2)) * pad).max(limits);
-        let hits = ends.at_most(-ends.halves_swapped());
-        PairHit { enter: ends.first_two(), is_hit: [hits & 1 != 0, hits & 2 != 0] }
+        let hits = ends.at_most(-ends.halves_swapped()) & 0b11;
+        let [a, b, ..] = ends.to_array();
+        PairHit { enter: [a, b], hits }
     }
 }

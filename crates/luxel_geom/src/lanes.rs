@@ -17,8 +17,14 @@ pub trait Lanes<R: Real>:
     fn from_f32(lanes: [f32; 4]) -> Self;
     /// From four numbers.
     fn from_array(lanes: [R; 4]) -> Self;
+    /// The first three columns of four rows of singles, exactly: a row is read in one piece, whatever its fourth number is.
+    fn columns(rows: [[f32; 4]; 4]) -> [Self; 3];
     /// Every lane the same.
     fn splat(value: R) -> Self;
+    /// The four numbers.
+    fn to_array(self) -> [R; 4];
+    /// Lane by lane the absolute value.
+    fn abs(self) -> Self;
     /// Lane by lane the smaller number.
     fn min(self, other: Self) -> Self;
     /// Lane by lane the larger number.
@@ -27,12 +33,14 @@ pub trait Lanes<R: Real>:
     fn at_most(self, other: Self) -> u32;
     /// Lanes 2, 3, 0, 1.
     fn halves_swapped(self) -> Self;
-    /// The first two lanes.
-    fn first_two(self) -> [R; 2];
+    /// Lanes 1, 2, 0, 3.
+    fn next_of_three(self) -> Self;
+    /// Lanes 2, 0, 1, 3.
+    fn last_of_three(self) -> Self;
 }
 
 macro_rules! impl_lanes {
-    ($real:ty, $vec4:ty) => {
+    ($real:ty, $vec4:ty, $mat4:ty) => {
         impl Lanes<$real> for $vec4 {
             #[inline(always)]
             fn from_f32(lanes: [f32; 4]) -> Self {
@@ -43,8 +51,22 @@ macro_rules! impl_lanes {
                 <$vec4>::from_array(lanes)
             }
             #[inline(always)]
+            fn columns(rows: [[f32; 4]; 4]) -> [Self; 3] {
+                let [a, b, c, d] = rows.map(Self::from_f32);
+                let columns = <$mat4>::from_cols(a, b, c, d).transpose();
+                [columns.x_axis, columns.y_axis, columns.z_axis]
+            }
+            #[inline(always)]
             fn splat(value: $real) -> Self {
                 <$vec4>::splat(value)
+            }
+            #[inline(always)]
+            fn to_array(self) -> [$real; 4] {
+                <$vec4>::to_array(&self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                <$vec4>::abs(self)
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
@@ -63,12 +85,16 @@ macro_rules! impl_lanes {
                 glam::Vec4Swizzles::zwxy(self)
             }
             #[inline(always)]
-            fn first_two(self) -> [$real; 2] {
-                [self.x, self.y]
+            fn next_of_three(self) -> Self {
+                glam::Vec4Swizzles::yzxw(self)
+            }
+            #[inline(always)]
+            fn last_of_three(self) -> Self {
+                glam::Vec4Swizzles::zxyw(self)
             }
         }
     };
 }
 
-impl_lanes!(f32, glam::Vec4);
-impl_lanes!(f64, glam::DVec4);
+impl_lanes!(f32, glam::Vec4, glam::Mat4);
+impl_lanes!(f64, glam::DVec4, glam::DMat4);

@@ -17,15 +17,24 @@
 //! ```
 pub mod aabb;
 pub mod affine;
+pub mod albedo;
 pub mod box_pair;
+pub mod emitter;
+pub mod environment;
+pub mod equirect;
 pub mod frame;
 pub mod lanes;
+pub mod microfacet;
+pub mod normal_guard;
+pub mod octahedral;
 pub mod optics;
 pub mod ray;
 pub mod real;
 pub mod rng;
+pub mod schlick;
 pub mod spawn;
 pub mod sphere;
+pub mod srgb;
 pub mod triangle;
 pub mod voxel;
 pub mod warp;

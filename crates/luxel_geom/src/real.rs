@@ -59,6 +59,20 @@ pub trait Real:
     fn sin(self) -> Self;
     /// Cosine of an angle in radians.
     fn cos(self) -> Self;
+    /// Tangent of an angle in radians.
+    fn tan(self) -> Self;
+    /// Angle in `[0, π]` whose cosine this is.
+    fn acos(self) -> Self;
+    /// Angle in `[-π, π]` of the point (`x`, `self`).
+    fn atan2(self, x: Self) -> Self;
+    /// e to the power of this.
+    fn exp(self) -> Self;
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+    /// This to the power of `exponent`; this is not negative.
+    fn powf(self, exponent: Self) -> Self;
+    /// The largest whole number that is not above this.
+    fn floor(self) -> Self;
     /// True for numbers that are neither NaN nor infinite.
     fn is_finite(self) -> bool;
     /// The next number towards `+∞`.
@@ -220,6 +234,34 @@ macro_rules! impl_real {
             #[inline]
             fn cos(self) -> Self {
                 $real::cos(self)
+            }
+            #[inline]
+            fn tan(self) -> Self {
+                $real::tan(self)
+            }
+            #[inline]
+            fn acos(self) -> Self {
+                $real::acos(self)
+            }
+            #[inline]
+            fn exp(self) -> Self {
+                $real::exp(self)
+            }
+            #[inline]
+            fn ln(self) -> Self {
+                $real::ln(self)
+            }
+            #[inline]
+            fn floor(self) -> Self {
+                $real::floor(self)
+            }
+            #[inline]
+            fn atan2(self, x: Self) -> Self {
+                $real::atan2(self, x)
+            }
+            #[inline]
+            fn powf(self, exponent: Self) -> Self {
+                $real::powf(self, exponent)
             }
             #[inline]
             fn is_finite(self) -> bool {

@@ -1,11 +1,16 @@
 //! Ray and triangle, watertight.
 //!
 //! Theory: Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection" (JCGT 2(1)), with the lower bound
-//! on `t` of pbrt-v4 §6.8.7. Deviations (robustness.md, A1): each edge function is evaluated in an order that
-//! depends on its end points only, so that two triangles which share an edge compute the same number whatever
-//! the compiler fuses, and an edge function counts as inside down to its own rounding error. No ray slips
-//! between neighbours; a ray on the border may meet both, which a closest hit does not mind. And a hit below the bound
-//! on `t` is not dropped but decided by the triangle's plane.
+//! on `t` of pbrt-v4 §6.8.7. Deviations (robustness.md, A1): each edge function is written so that its end points may
+//! be exchanged, sign aside, without changing a bit, so that two triangles which share an edge compute the same number
+//! (Rust fuses nothing; WGSL may, so there the end points are put in order), and an edge function counts as inside down
+//! to its own rounding error. No ray slips between neighbours; a ray on the border may meet both, which a closest hit does not mind. And a hit below the bound
+//! on `t` is not dropped but decided by the triangle's plane: [`point_inside`] sees to it that a ray starts on the right
+//! side of it.
+//!
+//! The corners stand in lanes, and so do the edges, and what a ray brings to every triangle is prepared once
+//! ([`TriangleRay`]).
+use crate::lanes::Lanes;
 use crate::{Aabb, Exclude, Real, SlabRay, Vector};
 
 /// Where a ray meets a triangle.
@@ -19,14 +24,53 @@ pub struct TriangleHit<R: Real> {
     pub v: R,
 }
 
-/// A vertex in the ray's frame: the ray runs along `+z` through the origin of `(x, y)`.
-#[derive(Clone, Copy)]
-struct Sheared<R> {
-    x: R,
-    y: R,
-    z: R,
-    dx: R,
-    dy: R,
+/// The corners of a triangle, axis by axis in the first three lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Corners<R: Real>([R::Lanes; 3]);
+
+/// What a ray brings to every triangle: its frame, in which it runs along `+z` through the origin of `(x, y)`.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleRay<R: Real> {
+    /// The origin, its axes in the order of the frame's.
+    origin: [R::Lanes; 3],
+    /// The axis that is the frame's `z`: that in which the direction is longest.
+    axis: usize,
+    /// By how much `x` and `y` are sheared per `z`.
+    slope: [R::Lanes; 2],
+    /// One over the direction along `z`.
+    inv_z: R,
+}
+
+/// Corners in the ray's frame, each in its lane.
+struct Sheared<R: Real> {
+    x: R::Lanes,
+    y: R::Lanes,
+    z: R::Lanes,
+    /// Errors of `x` and `y`, in units of 4u.
+    dx: R::Lanes,
+    dy: R::Lanes,
+}
+
+impl<R: Real> Corners<R> {
+    /// From vertices.
+    #[inline]
+    pub fn new(v: &[R::Vec3; 3]) -> Self {
+        let axis = |k| R::Lanes::from_array([v[0].axis(k), v[1].axis(k), v[2].axis(k), v[2].axis(k)]);
+        Self([axis(0), axis(1), axis(2)])
+    }
+
+    /// From rows of three coordinates and a number that says nothing.
+    #[inline(always)]
+    pub fn from_rows(rows: [[f32; 4]; 3]) -> Self {
+        Self(R::Lanes::columns([rows[0], rows[1], rows[2], rows[2]]))
+    }
+
+    /// Back to vertices.
+    #[inline]
+    pub fn vertices(&self) -> [R::Vec3; 3] {
+        let [x, y, z] = self.0.map(R::Lanes::to_array);
+        [0, 1, 2].map(|i| R::Vec3::new(x[i], y[i], z[i]))
+    }
 }
 
 /// The stored box of a triangle: outset, as every box is.
@@ -38,37 +82,114 @@ pub fn bounds<R: Real>(v: &[R::Vec3; 3]) -> Aabb<R> {
 /// The parameter in `(t_min, t_max]` at which the ray meets the triangle, from either side.
 #[inline]
 pub fn intersect<R: Real>(ray: &SlabRay<R>, v: &[R::Vec3; 3], exclude: Exclude) -> Option<TriangleHit<R>> {
-    let interval = bounds::<R>(v).interval(ray);
-    if !interval.overlaps(ray.t_min, ray.t_max) || exclude != Exclude::Nothing {
-        return None;
-    }
-    let hit = woop(ray, v)?;
-    let t = interval.clamp(hit.t);
-    (t > ray.t_min && t <= ray.t_max).then_some(TriangleHit { t, ..hit })
+    TriangleRay::new(ray).intersect(ray, &Corners::new(v), exclude)
 }
 
-/// Woop's test itself, before the ray's interval is applied.
-fn woop<R: Real>(ray: &SlabRay<R>, v: &[R::Vec3; 3]) -> Option<TriangleHit<R>> {
-    let kz = largest_axis::<R>(ray.direction);
-    let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
-    let inv_z = R::ONE / ray.direction.axis(kz);
-    let (sx, sy) = (ray.direction.axis(kx) * inv_z, ray.direction.axis(ky) * inv_z);
-    let s = v.map(|p| shear::<R>(p - ray.origin, [kx, ky, kz], sx, sy));
-
-    let (e0, d0) = edge(&s[1], &s[2]);
-    let (e1, d1) = edge(&s[2], &s[0]);
-    let (e2, d2) = edge(&s[0], &s[1]);
-    let front = e0 >= -d0 && e1 >= -d1 && e2 >= -d2;
-    let back = e0 <= d0 && e1 <= d1 && e2 <= d2;
-    // In this order a triangle and the same seen from behind (two vertices swapped) give the same bits.
-    let det = e0 + (e1 + e2);
-    if !(front || back) || det == R::ZERO {
-        return None;
+impl<R: Real> TriangleRay<R> {
+    /// Prepares a valid ray.
+    #[inline]
+    pub fn new(ray: &SlabRay<R>) -> Self {
+        let axis = largest_axis::<R>(ray.direction);
+        let inv_z = R::ONE / ray.direction.axis(axis);
+        let along = |v: R::Vec3, k: usize| v.axis((axis + 1 + k) % 3);
+        Self {
+            origin: [0, 1, 2].map(|k| R::Lanes::splat(along(ray.origin, k))),
+            axis,
+            slope: [0, 1].map(|k| R::Lanes::splat(along(ray.direction, k) * inv_z)),
+            inv_z,
+        }
     }
-    let weights = inside(e0 / det, e1 / det, e2 / det)?;
-    let t = (weights[0] * s[0].z + (weights[1] * s[1].z + weights[2] * s[2].z)) * inv_z;
-    let is_ahead = t > t_error(&s, det, inv_z) || is_plane_ahead::<R>(ray, v);
-    is_ahead.then_some(TriangleHit { t, u: weights[1], v: weights[2] })
+
+    /// The parameter in `(t_min, t_max]` at which the ray that this was made from meets the triangle, from either side.
+    #[inline(always)]
+    pub fn intersect(
+        &self,
+        ray: &SlabRay<R>,
+        corners: &Corners<R>,
+        exclude: Exclude,
+    ) -> Option<TriangleHit<R>> {
+        let s = self.shear(corners);
+        let edges = edges(&s)?;
+        if exclude != Exclude::Nothing {
+            return None;
+        }
+        self.hit(ray, corners, &s, edges)
+    }
+
+    /// The corners relative to the origin, brought into the ray's frame.
+    #[inline(always)]
+    fn shear(&self, corners: &Corners<R>) -> Sheared<R> {
+        let [x, y, z] = corners.0;
+        let [x, y, z] = match self.axis {
+            0 => [y, z, x],
+            1 => [z, x, y],
+            _ => [x, y, z],
+        };
+        let (x, y, z) = (x - self.origin[0], y - self.origin[1], z - self.origin[2]);
+        let [moved_x, moved_y] = self.slope.map(|slope| slope * z);
+        Sheared {
+            x: x - moved_x,
+            y: y - moved_y,
+            z,
+            dx: x.abs() + moved_x.abs(),
+            dy: y.abs() + moved_y.abs(),
+        }
+    }
+
+    /// The hit of a ray that passes between the edges, if its parameter is wanted.
+    #[inline]
+    fn hit(
+        &self,
+        ray: &SlabRay<R>,
+        corners: &Corners<R>,
+        s: &Sheared<R>,
+        [e0, e1, e2]: [R; 3],
+    ) -> Option<TriangleHit<R>> {
+        // In this order a triangle and the same seen from behind (two vertices swapped) give the same bits.
+        let det = e0 + (e1 + e2);
+        if det == R::ZERO {
+            return None;
+        }
+        let weights = inside(e0 / det, e1 / det, e2 / det)?;
+        let z = s.z.to_array();
+        let t = (weights[0] * z[0] + (weights[1] * z[1] + weights[2] * z[2])) * self.inv_z;
+        let v = corners.vertices();
+        let t = ahead(t, t_error(s, det, self.inv_z), || is_plane_ahead::<R>(ray, &v))?;
+        let interval = bounds::<R>(&v).interval(ray);
+        let held = interval.clamp(t);
+        let is_wanted = interval.overlaps(ray.t_min, ray.t_max) && held > ray.t_min && held <= ray.t_max;
+        is_wanted.then_some(TriangleHit { t: held, u: weights[1], v: weights[2] })
+    }
+}
+
+/// Twice the signed areas of the triangles (origin, a, b) over the edges, if the origin lies on the same side of all of
+/// them or within their errors. Edge i is opposite corner i.
+///
+/// With a and b exchanged an area changes its sign and no other bit, and its error no bit: both owners of an edge
+/// get one number.
+#[inline(always)]
+fn edges<R: Real>(s: &Sheared<R>) -> Option<[R; 3]> {
+    let (ax, bx) = (s.x.next_of_three(), s.x.last_of_three());
+    let (ay, by) = (s.y.next_of_three(), s.y.last_of_three());
+    let (left, right) = (ax * by, ay * bx);
+    let e = left - right;
+    let across = ax.abs() * s.dy.last_of_three() + bx.abs() * s.dy.next_of_three();
+    let along = ay.abs() * s.dx.last_of_three() + by.abs() * s.dx.next_of_three();
+    let four_u = R::Lanes::splat(R::from_f64(4.0) * R::UNIT_ROUNDOFF);
+    let error = ((across + along) + (left.abs() + right.abs())) * four_u;
+    let front = (-error).at_most(e) & 0b111 == 0b111;
+    let back = e.at_most(error) & 0b111 == 0b111;
+    let [e0, e1, e2, _] = e.to_array();
+    (front || back).then_some([e0, e1, e2])
+}
+
+/// The parameter of a hit that is not behind the origin. Where its sign may be wrong the plane decides, and a hit that
+/// is ahead nevertheless lies within the error.
+fn ahead<R: Real>(t: R, error: R, is_plane_ahead: impl FnOnce() -> bool) -> Option<R> {
+    if t > error {
+        return Some(t);
+    }
+    is_plane_ahead().then(|| if t > R::ZERO { t } else { error })
 }
 
 /// Barycentric weights held inside the triangle: the tolerance may let them stand just outside.
@@ -91,49 +212,42 @@ fn largest_axis<R: Real>(d: R::Vec3) -> usize {
     }
 }
 
-/// A vertex relative to the origin, brought into the ray's frame, with the error of its two coordinates.
-fn shear<R: Real>(p: R::Vec3, k: [usize; 3], sx: R, sy: R) -> Sheared<R> {
-    let (x, y, z) = (p.axis(k[0]), p.axis(k[1]), p.axis(k[2]));
-    let four_u = R::from_f64(4.0) * R::UNIT_ROUNDOFF;
-    Sheared {
-        x: x - sx * z,
-        y: y - sy * z,
-        z,
-        dx: four_u * (x.abs() + (sx * z).abs()),
-        dy: four_u * (y.abs() + (sy * z).abs()),
+/// True if the ray runs towards the triangle's plane.
+///
+/// Decides the hits that are nearer than [`t_error`]. Dropping those, as pbrt does, lets a ray that starts beside the
+/// edge of two walls out of a closed room. The height of the plane over the origin is taken from the nearest vertex,
+/// because what it loses to rounding grows with the vertex's distance; if that may be all of it, the vertices must agree.
+#[cold]
+fn is_plane_ahead<R: Real>(ray: &SlabRay<R>, v: &[R::Vec3; 3]) -> bool {
+    let towards = v.map(|p| p - ray.origin);
+    let normal = area_normal::<R>(v);
+    let side = if normal.dot(ray.direction) > R::ZERO { normal } else { -normal };
+    let heights = towards.map(|p| side.dot(p));
+    let nearest = smallest(towards.map(|p| sum::<R>(p.abs())));
+    let error = R::gamma(6) * side.abs().dot(towards[nearest].abs());
+    heights[nearest] > error || (heights[nearest] > -error && heights.iter().all(|height| *height > R::ZERO))
+}
+
+fn smallest<R: Real>(x: [R; 3]) -> usize {
+    if x[0] <= x[1] && x[0] <= x[2] {
+        0
+    } else if x[1] <= x[2] {
+        1
+    } else {
+        2
     }
 }
 
-/// Twice the signed area of the triangle (origin, a, b), and a bound on its error.
-///
-/// Evaluated with the smaller end point first and negated if need be: both owners of an edge get one number.
-fn edge<R: Real>(a: &Sheared<R>, b: &Sheared<R>) -> (R, R) {
-    let swap = a.x > b.x || (a.x == b.x && a.y > b.y);
-    let (p, q) = if swap { (b, a) } else { (a, b) };
-    let e = p.x * q.y - p.y * q.x;
-    let rounding = R::from_f64(4.0) * R::UNIT_ROUNDOFF * ((p.x * q.y).abs() + (p.y * q.x).abs());
-    let error = p.x.abs() * q.dy + p.y.abs() * q.dx + q.x.abs() * p.dy + q.y.abs() * p.dx + rounding;
-    (if swap { -e } else { e }, error)
-}
-
-/// True if the ray runs towards the triangle's plane, as seen from every vertex.
-///
-/// Decides the hits that are nearer than [`t_error`]. Dropping those, as pbrt does, lets a ray that starts beside the
-/// edge of two walls out of a closed room: 4 of a million bounces in a cube, against 3 of a hundred million. Over a
-/// triangle whose normal is off the vertices disagree, so that no needle is hit by a ray that leaves it.
-fn is_plane_ahead<R: Real>(ray: &SlabRay<R>, v: &[R::Vec3; 3]) -> bool {
-    let normal = area_normal::<R>(v);
-    let towards = normal.dot(ray.direction) > R::ZERO;
-    v.iter().all(|p| {
-        let height = normal.dot(*p - ray.origin);
-        if towards { height > R::ZERO } else { height < R::ZERO }
-    })
+fn sum<R: Real>(v: R::Vec3) -> R {
+    v.x() + v.y() + v.z()
 }
 
 /// Below this bound the sign of a hit's `t` may be wrong (pbrt-v4 §6.8.7, Δt).
-fn t_error<R: Real>(s: &[Sheared<R>; 3], det: R, inv_z: R) -> R {
-    let largest = |f: fn(&Sheared<R>) -> R| f(&s[0]).abs().max(f(&s[1]).abs()).max(f(&s[2]).abs());
-    let (max_x, max_y, depth) = (largest(|p| p.x), largest(|p| p.y), largest(|p| p.z));
+fn t_error<R: Real>(s: &Sheared<R>, det: R, inv_z: R) -> R {
+    let [max_x, max_y, depth] = [s.x, s.y, s.z].map(|lanes| {
+        let [a, b, c, _] = lanes.abs().to_array();
+        a.max(b).max(c)
+    });
     // A length divided by that of the direction; the others are lengths, so that the bound scales with `t`.
     let max_z = depth * inv_z.abs();
     let delta_z = R::gamma(3) * max_z;
@@ -148,15 +262,52 @@ fn t_error<R: Real>(s: &[Sheared<R>; 3], det: R, inv_z: R) -> R {
 /// The hit point from its barycentric weights, and a bound on its error: γ(7) Σ|bᵢ pᵢ| (pbrt-v4 §6.8.5).
 #[inline]
 pub fn point<R: Real>(v: &[R::Vec3; 3], u: R, w: R) -> (R::Vec3, R::Vec3) {
-    let terms = [v[0] * (R::ONE - u - w), v[1] * u, v[2] * w];
+    weighted::<R>(v, [R::ONE - u - w, u, w])
+}
+
+/// How far inside the triangle the start of a ray is held, in errors of the point.
+const EDGE_MARGIN: f64 = 4.0;
+
+/// The point of the triangle from which a ray goes on, and a bound on its error: [`point`], held off the edges by a few
+/// of its errors. `drift` bounds what is added to the error before the next ray meets the mesh.
+///
+/// Beside the edge to another wall the error alone may put a point behind that wall, and so may the offset along the
+/// normal ([`crate::spawn`]); a ray that starts there leaves a closed room unseen. Here both are a fraction of the
+/// distance to the edge, so the start lies before every wall that meets this one at more than two degrees.
+#[inline]
+pub fn point_inside<R: Real>(v: &[R::Vec3; 3], u: R, w: R, drift: R::Vec3) -> (R::Vec3, R::Vec3) {
+    let weights = [R::ONE - u - w, u, w];
+    let (_, error) = weighted::<R>(v, weights);
+    let margin = R::from_f64(EDGE_MARGIN) * sum::<R>(error + drift);
+    // A weight is a height above an edge in heights of the triangle, each twice the area through its edge. Edges are
+    // taken too long and the area too small, by norms that neither overflow nor round differently at another scale.
+    let area = area_normal::<R>(v).abs().max_element();
+    let edges = [v[2] - v[1], v[0] - v[2], v[1] - v[0]].map(|edge| sum::<R>(edge.abs()));
+    let third = R::from_f64(1.0 / 3.0);
+    let held = [0, 1, 2].map(|i| weights[i].max((margin * edges[i] / area).min(third)));
+    let total = held[0] + (held[1] + held[2]);
+    weighted::<R>(v, held.map(|weight| weight / total))
+}
+
+fn weighted<R: Real>(v: &[R::Vec3; 3], weights: [R; 3]) -> (R::Vec3, R::Vec3) {
+    let terms = [v[0] * weights[0], v[1] * weights[1], v[2] * weights[2]];
     let p = terms[0] + terms[1] + terms[2];
-    let error = (terms[0].abs() + terms[1].abs() + terms[2].abs()) * R::gamma(7);
-    (p, error)
+    (p, (terms[0].abs() + terms[1].abs() + terms[2].abs()) * R::gamma(7))
 }
 
 /// The geometric normal, of length twice the area; it looks at the side from which the vertices run
 /// counter-clockwise.
+///
+/// Made from the two shorter edges: the longest would turn the normal of a needle by its aspect ratio in roundings.
 #[inline]
 pub fn area_normal<R: Real>(v: &[R::Vec3; 3]) -> R::Vec3 {
-    (v[1] - v[0]).cross(v[2] - v[0])
+    let edges = [v[2] - v[1], v[0] - v[2], v[1] - v[0]];
+    let squares = edges.map(|edge| edge.dot(edge));
+    if squares[0] >= squares[1] && squares[0] >= squares[2] {
+        edges[1].cross(edges[2])
+    } else if squares[1] >= squares[2] {
+        edges[2].cross(edges[0])
+    } else {
+        edges[0].cross(edges[1])
+    }
 }

@@ -33,14 +33,17 @@ fn as_real<R: Real>(ray: &Ray<f32>) -> SlabRay<R> {
 fn boxes_agree<R: Real>(ray: &Ray<f32>, boxes: [Aabb<f32>; 2]) -> [bool; 2] {
     let ray = as_real::<R>(ray);
     let corners = boxes.map(|b| [b.lo.to_array(), b.hi.to_array()]);
-    let pair = PairRay::new(&ray).test(corners.map(|[lo, _]| lo), corners.map(|[_, hi]| hi), ray.t_max);
+    let row = |corner: [f32; 3], link: f32| [corner[0], corner[1], corner[2], link];
+    let (lo, hi) = (corners.map(|[lo, _]| row(lo, f32::NAN)), corners.map(|[_, hi]| row(hi, f32::MAX)));
+    let pair = PairRay::new(&ray).test(lo, hi, ray.t_max);
+    let is_hit = [0, 1].map(|i| pair.hits & (1 << i) != 0);
     for (i, [lo, hi]) in corners.into_iter().enumerate() {
         let bounds = Aabb::<R> { lo: R::Vec3::from_array(lo), hi: R::Vec3::from_array(hi) };
         let interval = bounds.interval(&ray);
-        assert_eq!(pair.is_hit[i], interval.overlaps(ray.t_min, ray.t_max), "{ray:?} {bounds:?}");
+        assert_eq!(is_hit[i], interval.overlaps(ray.t_min, ray.t_max), "{ray:?} {bounds:?}");
         assert_eq!(pair.enter[i], interval.enter.max(ray.t_min));
     }
-    pair.is_hit
+    is_hit
 }
 
 #[test]

@@ -1,18 +1,12 @@
 //! The triangle kernel by itself: watertight, right at its ends, and left without being met again
 //! (robustness.md T01–T03, T11–T14, F01).
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use luxel_geom::triangle::{self, TriangleHit};
-use luxel_geom::{Exclude, Ray, SlabRay, Vector, rng, spawn};
-use luxel_testkit::meshes::{bumpy_sphere, zero_area};
+use luxel_geom::{Exclude, Ray, SlabRay, Vector, spawn};
+use luxel_testkit::closed::pbrt_ball;
+use luxel_testkit::exact::{Verdict, verdict};
+use luxel_testkit::meshes::zero_area;
 use luxel_testkit::{Random, TestMesh};
-
-/// The mesh of pbrt's watertightness test: 420 triangles around the origin, each vertex at a radius of its own.
-fn closed_mesh() -> TestMesh {
-    bumpy_sphere(15, 15).map(|p| {
-        let [word, ..] = rng::pcg4d([p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), 0]);
-        p * (1.0 + 5.0 * rng::uniform::<f32>(word))
-    })
-}
 
 fn hit(ray: &Ray<f32>, v: &[Vec3; 3]) -> Option<TriangleHit<f32>> {
     triangle::intersect(&SlabRay::new(ray), v, Exclude::Nothing)
@@ -53,14 +47,14 @@ fn misses(mesh: &TestMesh, rays: &[Ray<f32>]) -> usize {
 
 #[test]
 fn t01_t02_no_ray_slips_through_a_vertex_or_edge() {
-    let mesh = closed_mesh();
+    let mesh = pbrt_ball();
     assert_eq!(mesh.triangles.len(), 420);
     assert_eq!(misses(&mesh, &rays_to_seams(&mesh, 1, 1_000_000, Vec3::ZERO, 0.25)), 0);
 }
 
 #[test]
 fn negative_control_another_test_lets_rays_through() {
-    let mesh = closed_mesh();
+    let mesh = pbrt_ball();
     let rays = rays_to_seams(&mesh, 1, 20_000, Vec3::ZERO, 0.25);
     let meets = |ray: &Ray<f32>| (0..420).any(|i| moller_trumbore_hits(&mesh.vertices(i), ray));
     let missed = rays.iter().filter(|ray| !meets(ray)).count();
@@ -70,11 +64,11 @@ fn negative_control_another_test_lets_rays_through() {
 #[test]
 fn t03_no_ray_slips_through_far_away_or_at_any_scale() {
     for offset in [Vec3::new(148_376.0, 1234.0, -223_423.0), Vec3::splat(1e4)] {
-        let mesh = closed_mesh().map(|p| p + offset);
+        let mesh = pbrt_ball().map(|p| p + offset);
         assert_eq!(misses(&mesh, &rays_to_seams(&mesh, 2, 50_000, offset, 0.25)), 0, "{offset}");
     }
     for scale in [1e-6, 1e-3, 1e6] {
-        let mesh = closed_mesh().map(|p| p * scale);
+        let mesh = pbrt_ball().map(|p| p * scale);
         let rays = rays_to_seams(&mesh, 3, 50_000, Vec3::ZERO, 0.25 * scale);
         assert_eq!(misses(&mesh, &rays), 0, "{scale}");
     }
@@ -116,19 +110,6 @@ fn t12_a_triangle_and_its_back_give_the_same_bits() {
     assert!(hits > 90_000, "{hits}");
 }
 
-/// The exact verdict: on which side of each edge the ray's line passes. Positive if inside.
-fn exact_side(v: &[Vec3; 3], ray: &Ray<f32>) -> f64 {
-    let coordinate = |p: DVec3| robust::Coord3D { x: p.x, y: p.y, z: p.z };
-    let (from, to) = (ray.origin.as_dvec3(), (ray.origin.as_dvec3() + ray.direction.as_dvec3()));
-    let side = |a: Vec3, b: Vec3| {
-        let [a, b] = [a, b].map(|p| coordinate(p.as_dvec3()));
-        robust::orient3d(coordinate(from), coordinate(to), a, b)
-    };
-    let sides = [side(v[0], v[1]), side(v[1], v[2]), side(v[2], v[0])];
-    let all = |sign: f64| sides.iter().fold(f64::MAX, |least, s| least.min(s * sign));
-    all(1.0).max(all(-1.0))
-}
-
 #[test]
 fn t13_needles_are_hit_wherever_the_exact_answer_is_inside() {
     let mut random = Random::new(13);
@@ -140,7 +121,7 @@ fn t13_needles_are_hit_wherever_the_exact_answer_is_inside() {
         let origin = target + Vec3::Z * random.log_between(1e-2, 1e2);
         let ray: Ray<f32> = Ray::new(origin, target - origin);
         let is_hit = hit(&ray, &needle).is_some();
-        if exact_side(&needle, &ray) > 0.0 {
+        if verdict(&needle, &ray) == Verdict::Inside {
             inside += 1;
             assert!(is_hit, "{ray:?}");
         } else if !(-0.25..=1.25).contains(&w) {
@@ -171,7 +152,7 @@ fn spawned(random: &mut Random, v: &[Vec3; 3], grazing: bool) -> (Ray<f32>, f32)
     if u + w > 1.0 {
         (u, w) = (1.0 - u, 1.0 - w);
     }
-    let (point, error) = triangle::point::<f32>(v, u, w);
+    let (point, error) = triangle::point_inside::<f32>(v, u, w, Vec3::ZERO);
     let normal = triangle::area_normal::<f32>(v).normalized();
     let any = random.direction();
     let height = if grazing { random.log_between(1e-3, 1e-2) } else { 1.0 };

@@ -1,0 +1,198 @@
+//! The albedo tables against another integral than the one that made them, and the energy that compensation returns.
+#![allow(clippy::print_stdout)]
+use glam::DVec3;
+use luxel_geom::albedo::{self, TABLES, axes, lookup};
+use luxel_geom::{microfacet as ggx, optics};
+use luxel_testkit::Random;
+
+/// Quadrature points per side.
+const POINTS: usize = 400;
+
+/// ∫ weight(wo, h) · D(h) (wo·h) / cos o dh over *all* normals that face `wo`, visible or not: the masking is in the
+/// weight, as G2. (The tables come from an integral over visible normals.)
+fn over_normals(cos: f64, alpha: f64, weight: impl Fn(DVec3, DVec3) -> f64) -> f64 {
+    let wo = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    let mut sum = 0.0;
+    for i in 0..POINTS {
+        // 1 − a is the square of the place: room for the tail.
+        let place = (i as f64 + 0.5) / POINTS as f64;
+        let rest = place * place;
+        let slope = alpha * ((1.0 - rest) / rest).sqrt();
+        let cos_h = (1.0 + slope * slope).sqrt().recip();
+        for k in 0..POINTS {
+            let phi = std::f64::consts::PI * (k as f64 + 0.5) / POINTS as f64;
+            let h = DVec3::new(slope * cos_h * phi.cos(), slope * cos_h * phi.sin(), cos_h);
+            let facing = wo.dot(h);
+            if facing > 0.0 {
+                sum += 2.0 * place * facing / (cos * cos_h) * weight(wo, h);
+            }
+        }
+    }
+    sum / (POINTS * POINTS) as f64
+}
+
+fn mirrored(wo: DVec3, h: DVec3, alpha: f64) -> f64 {
+    let wi = optics::reflect::<f64>(wo, h);
+    if wi.z > 0.0 { ggx::masking_shadowing::<f64>(wo, wi, alpha) } else { 0.0 }
+}
+
+fn conductor(cos: f64, roughness: f64) -> f64 {
+    let alpha = roughness * roughness;
+    1.0 - over_normals(cos, alpha, |wo, h| mirrored(wo, h, alpha))
+}
+
+fn coat(cos: f64, roughness: f64, eta: f64) -> f64 {
+    let alpha = roughness * roughness;
+    over_normals(cos, alpha, |wo, h| {
+        optics::fresnel_dielectric(wo.dot(h), eta).reflectance * mirrored(wo, h, alpha)
+    })
+}
+
+fn glass(cos: f64, roughness: f64, eta: f64) -> f64 {
+    let alpha = roughness * roughness;
+    1.0 - over_normals(cos, alpha, |wo, h| {
+        let fresnel = optics::fresnel_dielectric(wo.dot(h), eta);
+        let wi = optics::refract::<f64>(wo, h, eta, fresnel.cos_t);
+        let passes = fresnel.reflectance < 1.0 && wi.z < 0.0;
+        let through = if passes { ggx::masking_shadowing::<f64>(wo, wi, alpha) } else { 0.0 };
+        fresnel.reflectance * mirrored(wo, h, alpha) + (1.0 - fresnel.reflectance) * through
+    })
+}
+
+/// A cosine above `least`, a roughness and an index whose distance from 1 is at least 0.1.
+fn case(random: &mut Random, least: f32) -> (f64, f64, f64) {
+    let cos = random.between(least, 1.0);
+    let roughness = random.between(ggx::SMOOTH_ALPHA.sqrt(), 1.0);
+    (cos.into(), roughness.into(), random.between(1.1, 2.5).into())
+}
+
+/// The largest difference and the root of the mean square one.
+fn differences(count: u32, mut difference: impl FnMut() -> f64) -> (f64, f64) {
+    let all: Vec<f64> = (0..count).map(|_| difference().abs()).collect();
+    let square: f64 = all.iter().map(|d| d * d).sum();
+    (all.into_iter().fold(0.0, f64::max), (square / f64::from(count)).sqrt())
+}
+
+#[test]
+fn the_file_is_complete_and_its_entries_are_shares() {
+    let losses = [0..albedo::COAT, albedo::COAT_AVERAGES..albedo::GLASS, albedo::GLASS..albedo::LENGTH];
+    for range in losses {
+        let range = range.start as usize..range.end as usize;
+        assert!(TABLES[range].iter().all(|entry| (-1e-6..1.0).contains(entry)));
+    }
+    let coat = albedo::COAT as usize..albedo::COAT_AVERAGES as usize;
+    assert!(TABLES[coat].iter().all(|&entry| entry > 0.0 && entry.is_finite()));
+    assert!(TABLES.last().is_some_and(|&entry| entry > 0.0), "run `cargo xtask generate albedo`");
+}
+
+#[test]
+fn losses_of_conductors_are_those_of_the_other_integral() {
+    let mut random = Random::new(1);
+    let (worst, mean) = differences(150, || {
+        let (cos, roughness, _) = case(&mut random, 0.02);
+        conductor(cos, roughness) - lookup::conductor_loss(&TABLES, cos, roughness)
+    });
+    println!("conductor: {worst:e} {mean:e}");
+    assert!(worst < 1.5e-3 && mean < 5e-4, "{worst:e} {mean:e}");
+}
+
+#[test]
+fn albedos_of_coats_are_those_of_the_other_integral() {
+    let mut random = Random::new(2);
+    let (worst, mean) = differences(150, || {
+        let (cos, roughness, eta) = case(&mut random, 0.05);
+        coat(cos, roughness, eta) - lookup::coat_albedo(&TABLES, cos, roughness, eta)
+    });
+    println!("coat: {worst:e} {mean:e}");
+    assert!(worst < 1.5e-3 && mean < 5e-4, "{worst:e} {mean:e}");
+}
+
+#[test]
+fn losses_of_glass_are_those_of_the_other_integral() {
+    let mut random = Random::new(3);
+    let (worst, mean) = differences(200, || {
+        let (cos, roughness, eta) = case(&mut random, 0.1);
+        let eta = if random.below(2) == 0 { eta } else { eta.recip() };
+        glass(cos, roughness, eta) - lookup::glass_loss(&TABLES, cos, roughness, eta)
+    });
+    println!("glass: {worst:e} {mean:e}");
+    assert!(worst < 3e-3 && mean < 7e-4, "{worst:e} {mean:e}");
+}
+
+/// 2 ∫ f(cos) cos dcos.
+fn average(f: impl Fn(f64) -> f64) -> f64 {
+    const COUNT: u32 = 10_000;
+    (0..COUNT).map(|k| f(((f64::from(k) + 0.5) / f64::from(COUNT)).sqrt())).sum::<f64>() / f64::from(COUNT)
+}
+
+#[test]
+fn averages_are_those_of_the_lookups() {
+    let mut random = Random::new(4);
+    for _ in 0..200 {
+        let (_, roughness, eta) = case(&mut random, 0.1);
+        let conductor = average(|c| lookup::conductor_loss(&TABLES, c, roughness));
+        let found = lookup::conductor_loss_average(&TABLES, roughness);
+        assert!((conductor - found).abs() < 3e-4, "{roughness}: {conductor} {found}");
+        let coat = average(|c| lookup::coat_albedo(&TABLES, c, roughness, eta));
+        let found = lookup::coat_albedo_average(&TABLES, roughness, eta);
+        assert!((coat - found).abs() < 1e-3, "{roughness} {eta}: {coat} {found}");
+        for eta in [eta, eta.recip()] {
+            let glass = average(|c| lookup::glass_loss(&TABLES, c, roughness, eta));
+            let found = lookup::glass_loss_average(&TABLES, roughness, eta);
+            assert!((glass - found).abs() < 5e-4, "{roughness} {eta}: {glass} {found}");
+        }
+    }
+}
+
+#[test]
+fn a_compensated_conductor_is_lossless() {
+    // L02: the whole albedo, at every cosine, from the independent integral and the tables.
+    for roughness in [0.0316, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0] {
+        for cos in [0.05, 0.2, 0.5, 0.8, 0.99] {
+            let mean = lookup::conductor_loss_average(&TABLES, roughness);
+            let own = lookup::conductor_loss(&TABLES, cos, roughness);
+            let lobe = |c: f64| {
+                let other = lookup::conductor_loss(&TABLES, c, roughness);
+                std::f64::consts::PI * lookup::compensation(own, other, mean)
+            };
+            let albedo = 1.0 - conductor(cos, roughness) + average(lobe);
+            assert!((albedo - 1.0).abs() < 2e-3, "{roughness} {cos}: {albedo}");
+        }
+    }
+}
+
+#[test]
+fn lookups_hold_outside_their_axes() {
+    for (cos, roughness, eta) in
+        [(-0.1f32, -1.0f32, 0.0f32), (0.0, 0.0, 1.0), (1.1, 2.0, 100.0), (1.0, 1.0, 2.5)]
+    {
+        let losses = [
+            lookup::conductor_loss(&TABLES, cos, roughness),
+            lookup::conductor_loss_average(&TABLES, roughness),
+            lookup::coat_albedo(&TABLES, cos, roughness, eta),
+            lookup::coat_albedo_average(&TABLES, roughness, eta),
+            lookup::glass_loss(&TABLES, cos, roughness, eta),
+            lookup::glass_loss_average(&TABLES, roughness, eta),
+        ];
+        assert!(losses.iter().all(|loss| (0.0..=1.0).contains(loss)), "{cos} {roughness} {eta}: {losses:?}");
+    }
+    assert_eq!(lookup::compensation(0.0f32, 0.0, 0.0), 0.0);
+    assert_eq!(lookup::conductor_loss::<f32>(&[], 0.5, 0.5), 0.0);
+}
+
+#[test]
+fn places_and_values_are_inverse() {
+    for k in 0..=100 {
+        let place = f64::from(k) / 100.0;
+        let roughness = axes::roughness_at(place);
+        let back = [
+            axes::roughness_place(roughness),
+            axes::cosine_place(axes::cosine_at(place, roughness), roughness),
+            axes::coat_index_place(axes::coat_index_at(place)),
+            axes::glass_index_place(axes::glass_index_at(place)),
+        ];
+        assert!(back.iter().all(|b| (b - place).abs() < 1e-7), "{place}: {back:?}");
+    }
+    assert_eq!(axes::glass_index_at(0.5f64), 1.0);
+    assert!((axes::coat_index_at(1.0f64) - f64::from(axes::MAX_ETA)).abs() < 1e-12);
+}
