@@ -48,6 +48,40 @@ counters! {
     MetalBounces => "metal_bounces",
     /// Reflections and refractions at a dielectric.
     DielectricBounces => "dielectric_bounces",
+    /// Bounces off a surface that is part mirror, part diffuse.
+    SemiSpecularBounces => "semi_specular_bounces",
+    /// Bounces off, or through, a surface of the metallic-roughness model.
+    PrincipledBounces => "principled_bounces",
+    /// Bounces that were refracted into or out of such a surface.
+    TransmissionBounces => "transmission_bounces",
+    /// Bounces off a clear coat.
+    ClearcoatBounces => "clearcoat_bounces",
+    /// Triangles whose corners' attributes were read.
+    AttributeReads => "attribute_reads",
+    /// Textures read.
+    TextureReads => "texture_reads",
+    /// Normals taken from a normal map.
+    NormalMapReads => "normal_map_reads",
+    /// Hits at which a surface could have let the ray through.
+    AlphaTests => "alpha_tests",
+    /// Segments of paths through a medium that absorbs.
+    AbsorbingSegments => "absorbing_segments",
+    /// Lights sampled.
+    LightSamples => "light_samples",
+    /// Nodes of the light tree that were weighed.
+    LightNodes => "light_nodes",
+    /// Samples of emitting triangles and spheres.
+    AreaLightSamples => "area_light_samples",
+    /// Samples of point lights and spotlights.
+    PunctualLightSamples => "punctual_light_samples",
+    /// Samples of lights that are infinitely far away.
+    DistantLightSamples => "distant_light_samples",
+    /// Rays that looked whether a light is visible.
+    ShadowRays => "shadow_rays",
+    /// Reads of the environment map.
+    EnvironmentReads => "environment_reads",
+    /// Rays from an orthographic camera.
+    OrthographicRays => "orthographic_rays",
     /// Hits on surfaces that emit.
     EmissionHits => "emission_hits",
     /// Evaluations of the gradient sky.
@@ -82,9 +116,9 @@ impl Counters {
         }
     }
 
-    /// All rays: from the camera and from surfaces.
+    /// All rays: from the camera, from surfaces, and towards lights.
     pub fn rays(&self) -> u64 {
-        self[Counter::CameraRays] + self[Counter::ScatteredRays]
+        self[Counter::CameraRays] + self[Counter::ScatteredRays] + self[Counter::ShadowRays]
     }
 
     /// Name and count of every counter.

@@ -77,7 +77,7 @@ features! {
     Lambert {
         name: "lambert",
         used: "a surface is diffuse", unused: "no surface is diffuse",
-        symbols: &["sample_lambert", "cosine_hemisphere"],
+        symbols: &["sample_lambert"],
         bindings: &[],
         counters: &[Counter::LambertBounces],
         nodes: &[],
@@ -95,7 +95,7 @@ features! {
     Dielectric {
         name: "dielectric",
         used: "a surface is glass", unused: "no surface is glass",
-        symbols: &["sample_dielectric", "fresnel_dielectric", "refract_dielectric"],
+        symbols: &["sample_dielectric", "refract_dielectric"],
         bindings: &[],
         counters: &[Counter::DielectricBounces],
         nodes: &[],
@@ -105,7 +105,7 @@ features! {
         name: "emission",
         used: "a surface emits light", unused: "no surface emits light",
         symbols: &["emitted_radiance"],
-        bindings: &["material_params"],
+        bindings: &[],
         counters: &[Counter::EmissionHits],
         nodes: &[],
     }
@@ -135,6 +135,153 @@ features! {
         symbols: &["survive_roulette"],
         bindings: &[],
         counters: &[Counter::RouletteTests],
+        nodes: &[],
+    }
+    /// Surfaces that are a mirror with some probability, else diffuse.
+    SemiSpecular {
+        name: "semi_specular",
+        used: "a surface is part mirror, part diffuse", unused: "no surface is part mirror, part diffuse",
+        symbols: &["sample_semi_specular"],
+        bindings: &[],
+        counters: &[Counter::SemiSpecularBounces],
+        nodes: &[],
+    }
+    /// The metallic-roughness model of glTF.
+    Principled {
+        name: "principled",
+        used: "a surface has the metallic-roughness model", unused: "no surface has the metallic-roughness model",
+        symbols: &["sample_principled", "evaluate_principled"],
+        bindings: &["albedo_tables"],
+        counters: &[Counter::PrincipledBounces],
+        nodes: &[],
+    }
+    /// Light that passes through a surface of the metallic-roughness model.
+    Transmission {
+        name: "transmission",
+        used: "a surface of the metallic-roughness model is clear",
+        unused: "no surface of the metallic-roughness model is clear",
+        symbols: &["sample_transmission"],
+        bindings: &[],
+        counters: &[Counter::TransmissionBounces],
+        nodes: &[],
+    }
+    /// A clear coat over the metallic-roughness model.
+    Clearcoat {
+        name: "clearcoat",
+        used: "a surface has a clear coat", unused: "no surface has a clear coat",
+        symbols: &["sample_clearcoat"],
+        bindings: &[],
+        counters: &[Counter::ClearcoatBounces],
+        nodes: &[],
+    }
+    /// Media that absorb light.
+    Absorption {
+        name: "absorption",
+        used: "a body absorbs light", unused: "no body absorbs light",
+        symbols: &["medium_transmittance"],
+        bindings: &[],
+        counters: &[Counter::AbsorbingSegments],
+        nodes: &[],
+    }
+    /// Normals, texture coordinates and colours of a mesh's own.
+    Attributes {
+        name: "attributes",
+        used: "a mesh has normals, texture coordinates or colours",
+        unused: "no mesh has normals, texture coordinates or colours",
+        symbols: &["vertex_attributes"],
+        bindings: &["triangle_attributes"],
+        counters: &[Counter::AttributeReads],
+        nodes: &[],
+    }
+    /// Textures.
+    Textures {
+        name: "textures",
+        used: "a surface has a texture", unused: "no surface has a texture",
+        symbols: &["sample_texture"],
+        bindings: &["textures", "texels"],
+        counters: &[Counter::TextureReads],
+        nodes: &[],
+    }
+    /// Normal maps.
+    NormalMaps {
+        name: "normal_maps",
+        used: "a surface has a normal map", unused: "no surface has a normal map",
+        symbols: &["apply_normal_map"],
+        bindings: &[],
+        counters: &[Counter::NormalMapReads],
+        nodes: &[],
+    }
+    /// Surfaces that let some rays pass.
+    Alpha {
+        name: "alpha",
+        used: "a surface has holes or is see-through", unused: "no surface has holes or is see-through",
+        symbols: &["passes_alpha"],
+        bindings: &[],
+        counters: &[Counter::AlphaTests],
+        nodes: &[],
+    }
+    /// Lights that are sampled from where they may shine (next-event estimation).
+    Lights {
+        name: "lights",
+        used: "there are lights that can be sampled", unused: "there is no light that can be sampled",
+        symbols: &["sample_light"],
+        bindings: &[],
+        counters: &[Counter::LightSamples, Counter::ShadowRays],
+        nodes: &["shadow_rays"],
+    }
+    /// Triangles and spheres as lights.
+    AreaLights {
+        name: "area_lights",
+        used: "a mesh or a sphere is a light", unused: "no mesh or sphere is a light",
+        symbols: &["sample_area_light"],
+        bindings: &[],
+        counters: &[Counter::AreaLightSamples],
+        nodes: &[],
+    }
+    /// Point lights and spotlights.
+    PunctualLights {
+        name: "punctual_lights",
+        used: "there are point lights or spotlights", unused: "there is no point light or spotlight",
+        symbols: &["sample_punctual_light"],
+        bindings: &[],
+        counters: &[Counter::PunctualLightSamples],
+        nodes: &[],
+    }
+    /// Lights that are infinitely far away.
+    DistantLights {
+        name: "distant_lights",
+        used: "there is a sun or another light infinitely far away",
+        unused: "there is no light infinitely far away",
+        symbols: &["sample_distant_light"],
+        bindings: &[],
+        counters: &[Counter::DistantLightSamples],
+        nodes: &[],
+    }
+    /// A choice among many lights by what they may contribute.
+    LightTree {
+        name: "light_tree",
+        used: "there are several lights to choose from", unused: "there are no lights to choose from",
+        symbols: &["sample_light_tree"],
+        bindings: &["light_nodes"],
+        counters: &[Counter::LightNodes],
+        nodes: &[],
+    }
+    /// A picture of the surroundings.
+    EnvironmentMap {
+        name: "environment_map",
+        used: "the surroundings are a picture", unused: "the surroundings are no picture",
+        symbols: &["environment_radiance"],
+        bindings: &["environment"],
+        counters: &[Counter::EnvironmentReads],
+        nodes: &[],
+    }
+    /// Parallel rays from the camera.
+    Orthographic {
+        name: "orthographic",
+        used: "the camera is orthographic", unused: "the camera is not orthographic",
+        symbols: &["orthographic_ray"],
+        bindings: &[],
+        counters: &[Counter::OrthographicRays],
         nodes: &[],
     }
     /// First-hit outputs beside the picture.

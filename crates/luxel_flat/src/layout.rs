@@ -49,7 +49,10 @@ macro_rules! wgsl_type {
 wgsl_type! {
     u32 => "u32", 4;
     f32 => "f32", 4;
+    [u32; 3] => "array<u32, 3>", 4;
+    [[u32; 2]; 3] => "array<vec2u, 3>", 8;
     [f32; 2] => "vec2f", 8;
+    [[f32; 2]; 3] => "array<vec2f, 3>", 8;
     [f32; 3] => "vec3f", 16;
     [f32; 4] => "vec4f", 16;
     [[f32; 4]; 3] => "array<vec4f, 3>", 16;

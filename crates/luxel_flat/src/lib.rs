@@ -16,6 +16,7 @@ pub mod features;
 pub mod film;
 pub mod heap;
 pub mod layout;
+pub mod mesh_accel;
 pub mod params;
 pub mod path;
 pub mod primitives;
@@ -28,10 +29,12 @@ pub use counters::{Counter, Counters};
 pub use features::{FEATURES, Feature, FeatureRow, FeatureSet};
 pub use film::{Cascade, FilmPixel};
 pub use heap::Heap;
+pub use mesh_accel::{MESH_ACCELS, MeshAccel};
 pub use params::{CameraRecord, DisplayParams, SceneParams, SliceParams};
-pub use path::{Aov, Path};
+pub use path::{Aov, Path, SurfacePoint};
 pub use primitives::{
-    BvhNode, Instance, LeafSphere, MaterialRecord, OctreeNode, SphereRecord, SvoNode, Triangle,
+    BvhNode, Instance, LeafSphere, LightNode, LightRecord, MaterialRecord, OctreeNode, SphereRecord, SvoNode,
+    TextureSlot, Triangle, TriangleAttributes,
 };
 pub use scene::{FlatScene, Span};
 pub use sphere_accel::{SPHERE_ACCELS, SphereAccel};

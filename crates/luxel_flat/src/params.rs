@@ -2,10 +2,11 @@
 use crate::layout::{WgslType, shared_struct};
 
 shared_struct! {
-    /// A perspective camera with a thin lens, in tracer space.
+    /// A camera in tracer space.
     ///
-    /// The ray through film position `(x, y)` in pixels (y downwards) has the direction
-    /// `corner + x · dx + y · dy`; its third coordinate along the optical axis is 1.
+    /// Let `p = corner + x · dx + y · dy` for the film position `(x, y)` in pixels, y downwards. In perspective it is
+    /// the direction of the ray, whose coordinate along the optical axis is 1. An orthographic camera's ray starts at
+    /// `origin + p` and goes `forward`.
     pub struct CameraRecord {
         /// Centre of the lens.
         pub origin: [f32; 3],
@@ -25,10 +26,14 @@ shared_struct! {
         pub height: u32,
         /// Unit vector to the right.
         pub right: [f32; 3],
-        /// Always 0.
-        pub reserved0: u32,
+        /// `CAMERA_PERSPECTIVE` or `CAMERA_ORTHOGRAPHIC`.
+        pub kind: u32,
         /// Unit vector upwards.
         pub up: [f32; 3],
+        /// Always 0.
+        pub reserved0: u32,
+        /// Unit vector along the optical axis, away from the camera.
+        pub forward: [f32; 3],
         /// Always 0.
         pub reserved1: u32,
     }
@@ -46,7 +51,7 @@ shared_struct! {
         pub camera: CameraRecord,
         /// Radiance of the constant sky, and of the gradient's horizon.
         pub sky: [f32; 3],
-        /// First node of the TLAS in the BVH heap.
+        /// First node of the TLAS in the GPU's buffer of BVH nodes: it stands behind those of the meshes.
         pub tlas_first: u32,
         /// Radiance of the gradient straight up.
         pub sky_zenith: [f32; 3],
@@ -60,10 +65,26 @@ shared_struct! {
         pub max_depth: u32,
         /// Number of surfaces after which Russian roulette begins.
         pub roulette_depth: u32,
+        /// Number of lights that can be sampled one by one; the environment is not among them.
+        pub light_count: u32,
+        /// How many of them, the first, are infinitely far away.
+        pub distant_count: u32,
+        /// Width of the environment map in texels; 0 if there is none.
+        pub environment_width: u32,
+        /// Height of the environment map in texels.
+        pub environment_height: u32,
+        /// Cosine of the environment's turn about +Y.
+        pub environment_cos: f32,
+        /// Sine of the environment's turn about +Y.
+        pub environment_sin: f32,
+        /// Factor on the environment map's radiance.
+        pub environment_strength: f32,
+        /// Number of nodes of the light tree over the lights that are not infinitely far away.
+        pub light_node_count: u32,
+        /// `LIGHT_SAMPLING_…`.
+        pub light_sampling: u32,
         /// Always 0.
         pub reserved0: u32,
-        /// Always 0.
-        pub reserved1: u32,
     }
 }
 

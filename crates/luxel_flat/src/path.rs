@@ -42,8 +42,63 @@ shared_struct! {
         pub hit_uv: [f32; 2],
         /// Product of the squared relative indices of refraction: what the roulette leaves out of the throughput.
         pub eta_scale: f32,
-        /// Always 0.
-        pub reserved: u32,
+        /// Density per solid angle with which the ray's direction was scattered; 0 if no light could have been
+        /// sampled instead: camera rays, mirrors, smooth glass.
+        pub pdf: f32,
+        /// Where the shadow ray starts, tracer space.
+        pub shadow_origin: [f32; 3],
+        /// 0, or `SHADOW_…` and how the shadow ray leaves the excluded primitive.
+        pub shadow_state: u32,
+        /// From there to the light; the parameter ends below 1.
+        pub shadow_direction: [f32; 3],
+        /// Packed unit normal (`luxel_geom::octahedral`) of the surface that the ray left: what the light tree weighed.
+        pub normal: u32,
+        /// Radiance that the path gathers if nothing is in the way.
+        pub shadow_radiance: [f32; 3],
+        /// Absorption of the medium that the ray runs in, as a material slot; `NONE` in free space.
+        pub medium: u32,
+    }
+}
+
+shared_struct! {
+    /// The surface at the end of a path's ray: its place, its frame, and its material with textures applied.
+    pub struct SurfacePoint {
+        /// The point, tracer space.
+        pub point: [f32; 3],
+        /// Its light in the table of lights, or `NONE`.
+        pub light: u32,
+        /// Bound on the error of each component of `point`.
+        pub error: [f32; 3],
+        /// `MATERIAL_LAMBERT`, ….
+        pub kind: u32,
+        /// Unit geometric normal, outwards.
+        pub normal: [f32; 3],
+        /// `MATERIAL_EMISSIVE`, ….
+        pub flags: u32,
+        /// Unit normal that the material is shaded with, on the side of `normal`.
+        pub shading_normal: [f32; 3],
+        /// As in `MaterialRecord`.
+        pub roughness: f32,
+        /// Base colour.
+        pub color: [f32; 3],
+        /// As in `MaterialRecord`.
+        pub metallic: f32,
+        /// Emitted radiance.
+        pub emission: [f32; 3],
+        /// As in `MaterialRecord`.
+        pub transmission: f32,
+        /// As in `MaterialRecord`.
+        pub specular_color: [f32; 3],
+        /// As in `MaterialRecord`.
+        pub specular: f32,
+        /// As in `MaterialRecord`.
+        pub ior: f32,
+        /// As in `MaterialRecord`.
+        pub clearcoat: f32,
+        /// As in `MaterialRecord`.
+        pub clearcoat_roughness: f32,
+        /// Material slot.
+        pub material: u32,
     }
 }
 

@@ -148,6 +148,45 @@ shared_struct! {
         pub material_first: u32,
         /// Levels of the SVO below its root: the volume spans `[0, 2^levels]³` (volumes).
         pub levels: u32,
+        /// `INSTANCE_…`: which attributes the triangles have.
+        pub flags: u32,
+        /// From a triangle's slot to that of its attributes, modulo 2³² (meshes with `INSTANCE_ATTRIBUTES`).
+        pub attribute_offset: u32,
+    }
+}
+
+shared_struct! {
+    /// What the corners of a triangle carry besides their places, in the slot of the triangle plus
+    /// `Instance::attribute_offset`.
+    pub struct TriangleAttributes {
+        /// Unit normals in the mesh's space (`luxel_geom::octahedral`).
+        pub normals: [u32; 3],
+        /// Unit tangents and their signs (`luxel_geom::octahedral`).
+        pub tangents: [u32; 3],
+        /// First set of texture coordinates.
+        pub uv0: [[f32; 2]; 3],
+        /// Second set of texture coordinates.
+        pub uv1: [[f32; 2]; 3],
+        /// Linear colour and opacity: red and green, blue and alpha, as pairs of 16-bit fractions of 65535.
+        pub colors: [[u32; 2]; 3],
+    }
+}
+
+shared_struct! {
+    /// A texture as a material uses it: an image, how it is read, and where the surface is on it.
+    pub struct TextureSlot {
+        /// First row of the affine map from texture coordinates to the image, `u' = m · (u, v, 1)`.
+        pub row_u: [f32; 3],
+        /// First texel in the heap.
+        pub texel_first: u32,
+        /// Second row.
+        pub row_v: [f32; 3],
+        /// Width and height in texels: `height << 16 | width`.
+        pub size: u32,
+        /// `TEXTURE_…`.
+        pub flags: u32,
+        /// Factor on the x and y of a normal map; 1 for others.
+        pub scale: f32,
         /// Always 0.
         pub reserved0: u32,
         /// Always 0.
@@ -156,20 +195,99 @@ shared_struct! {
 }
 
 shared_struct! {
-    /// A material: kind, flags, and where its further parameters stand.
+    /// A material: factors, and the textures that they are multiplied with.
     pub struct MaterialRecord {
-        /// `MATERIAL_LAMBERT`, `MATERIAL_METAL` or `MATERIAL_DIELECTRIC`.
-        pub kind: u32,
-        /// `MATERIAL_EMISSIVE`.
-        pub flags: u32,
-        /// First parameter (a `vec4f` of the parameter heap).
-        pub param_first: u32,
-        /// Number of parameters.
-        pub param_count: u32,
-        /// Albedo, linear Rec.709.
+        /// Base colour, linear Rec.709: albedo of `LAMBERT`, `METAL`, `SEMI_SPECULAR`, base of `PRINCIPLED`.
         pub color: [f32; 3],
-        /// Fuzz of a metal, index of refraction of a dielectric.
-        pub scalar: f32,
+        /// `MATERIAL_LAMBERT`, ….
+        pub kind: u32,
+        /// Radiance that it emits, on both sides, linear Rec.709.
+        pub emission: [f32; 3],
+        /// `MATERIAL_EMISSIVE`, ….
+        pub flags: u32,
+        /// Tint of the dielectric reflection at normal incidence (`KHR_materials_specular`).
+        pub specular_color: [f32; 3],
+        /// Strength of the dielectric reflection.
+        pub specular: f32,
+        /// Absorption of the inside per metre, linear Rec.709 (`KHR_materials_volume`).
+        pub absorption: [f32; 3],
+        /// Fuzz of a `METAL`, smoothness of a `SEMI_SPECULAR`, roughness (square root of GGX's α) of a `PRINCIPLED`.
+        pub roughness: f32,
+        /// Share of the base that is metal.
+        pub metallic: f32,
+        /// Index of refraction.
+        pub ior: f32,
+        /// Share of the dielectric base that is clear.
+        pub transmission: f32,
+        /// Strength of the clear coat.
+        pub clearcoat: f32,
+        /// Roughness of the clear coat.
+        pub clearcoat_roughness: f32,
+        /// Share of the rays that see the surface, before textures and vertex colours.
+        pub alpha: f32,
+        /// Below this opacity a surface of `MATERIAL_ALPHA_MASK` is not there.
+        pub alpha_cutoff: f32,
+        /// Light of the entity's first primitive in the table of lights, or `NONE`; the others follow in slot order.
+        pub light_first: u32,
+        /// First `TextureSlot`.
+        pub texture_first: u32,
+        /// Which textures there are: bit `TEXTURE_ROLE_…`; their slots stand in order of their bits.
+        pub texture_mask: u32,
+        /// Always 0.
+        pub reserved0: u32,
+        /// Always 0.
+        pub reserved1: u32,
+    }
+}
+
+shared_struct! {
+    /// A light that can be sampled, in tracer space. First come `SceneParams::distant_count` of `LIGHT_DISTANT`.
+    pub struct LightRecord {
+        /// Triangle: first vertex. Sphere, point, spot: centre. Distant: unit direction towards the light.
+        pub position: [f32; 3],
+        /// `LIGHT_TRIANGLE`, `LIGHT_SPHERE`, `LIGHT_POINT`, `LIGHT_SPOT` or `LIGHT_DISTANT`.
+        pub kind: u32,
+        /// Triangle: edge from the first to the second vertex. Spot: unit direction of its axis.
+        pub edge1: [f32; 3],
+        /// Sphere: radius. Spot: cosine of the inner cone. Distant: cosine of the angular radius. Triangle: factor on the
+        /// coordinates of a point from which it is seen that bounds how far rays from there miss it by rounding.
+        pub scalar0: f32,
+        /// Triangle: edge from the first to the third vertex.
+        pub edge2: [f32; 3],
+        /// Spot: cosine of the outer cone. Distant: 1 − cosine of the angular radius, without cancellation. Triangle and
+        /// sphere: bound on the error of its place, per component.
+        pub scalar1: f32,
+        /// Emitted radiance (triangle, sphere, distant with an angle), intensity (point, spot) or irradiance (distant
+        /// without an angle), linear Rec.709.
+        pub emission: [f32; 3],
+        /// The way from the root to this light's leaf in the light tree: bit i = second child at depth i.
+        pub trail: u32,
+    }
+}
+
+shared_struct! {
+    /// A node of the light tree: a bound on the lights below (pbrt-v4 §12.6.3).
+    pub struct LightNode {
+        /// Corner of smallest coordinates.
+        pub lo: [f32; 3],
+        /// Largest radiant intensity of the lights below, summed, relative to the brightest light.
+        pub power: f32,
+        /// Corner of largest coordinates.
+        pub hi: [f32; 3],
+        /// A leaf's light, or the second child of an inner node; the first one follows the node. `LIGHT_LEAF` marks leaves.
+        pub content: u32,
+        /// Axis of the cone of emission normals, unit length.
+        pub axis: [f32; 3],
+        /// Cosine of the cone's half angle (pbrt's cos θ_o).
+        pub cos_normals: f32,
+        /// Cosine of the largest angle between a normal and light that it emits (pbrt's cos θ_e).
+        pub cos_emission: f32,
+        /// 1 if light leaves both sides.
+        pub two_sided: u32,
+        /// Always 0.
+        pub reserved0: u32,
+        /// Always 0.
+        pub reserved1: u32,
     }
 }
 

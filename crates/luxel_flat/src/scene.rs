@@ -1,7 +1,7 @@
 //! The frozen scene: what `bake` publishes and both tracers read.
 use crate::{
-    BvhNode, FeatureSet, Heap, Instance, LeafSphere, MaterialRecord, OctreeNode, SceneParams, SphereAccel,
-    SphereRecord, SvoNode, Triangle,
+    BvhNode, FeatureSet, Heap, Instance, LeafSphere, LightNode, LightRecord, MaterialRecord, MeshAccel,
+    OctreeNode, SceneParams, SphereAccel, SphereRecord, SvoNode, TextureSlot, Triangle, TriangleAttributes,
 };
 
 /// Consecutive records of a heap.
@@ -27,13 +27,17 @@ impl Span {
 /// points at one.
 #[derive(Clone, Debug, Default)]
 pub struct FlatScene {
-    /// Uniform values: camera, sky, depth limits, where the TLAS stands.
+    /// Uniform values: camera, sky, depth limits, where the GPU finds the TLAS.
     pub params: SceneParams,
-    /// BVH nodes: the TLAS (`params.tlas_first`, `params.tlas_count`) and one BVH per mesh. A TLAS leaf holds
-    /// exactly one instance slot.
+    /// The TLAS, its root first: a heap of its own, so that a moved instance copies nothing of the meshes' trees. A
+    /// leaf holds exactly one instance slot. On the GPU it follows `bvh_nodes` in the same buffer.
+    pub tlas_nodes: Heap<BvhNode>,
+    /// BVH nodes: one tree per mesh.
     pub bvh_nodes: Heap<BvhNode>,
     /// Placed objects, by slot.
     pub instances: Heap<Instance>,
+    /// How the BVHs of meshes are searched.
+    pub mesh_accel: MeshAccel,
     /// The structure over the spheres, and with it which of the next four heaps are in use.
     pub sphere_accel: SphereAccel,
     /// Spheres, by slot; always there.
@@ -46,12 +50,24 @@ pub struct FlatScene {
     pub leaf_spheres: Heap<LeafSphere>,
     /// Triangles, each mesh in its BVH's leaf order.
     pub triangles: Heap<Triangle>,
+    /// What their corners carry, for meshes that carry anything, in the same order.
+    pub triangle_attributes: Heap<TriangleAttributes>,
     /// Nodes of the voxel octrees; the root of each is its first.
     pub svo_nodes: Heap<SvoNode>,
     /// Materials, by slot.
     pub materials: Heap<MaterialRecord>,
-    /// Further parameters of materials.
-    pub material_params: Heap<[f32; 4]>,
+    /// Textures as materials use them.
+    pub textures: Heap<TextureSlot>,
+    /// Texels of their images, row by row from the top: red, green, blue, alpha, 8 bits each from the lowest.
+    pub texels: Heap<u32>,
+    /// Directional albedos that layered and multiply scattering materials look up; empty without `principled`.
+    pub albedo_tables: Heap<f32>,
+    /// Lights that can be sampled.
+    pub lights: Heap<LightRecord>,
+    /// The light tree over those that are not infinitely far away; the root is node 0.
+    pub light_nodes: Heap<LightNode>,
+    /// The environment map and how it is sampled (`luxel_geom::environment`).
+    pub environment: Heap<[f32; 4]>,
     /// What the scene calls for.
     pub features: FeatureSet,
     /// Position of tracer space's origin in world space, metres.
@@ -64,8 +80,7 @@ impl FlatScene {
     /// The TLAS's nodes.
     #[inline]
     pub fn tlas(&self) -> &[BvhNode] {
-        let span = Span { first: self.params.tlas_first, count: self.params.tlas_count };
-        &self.bvh_nodes.as_slice()[span.range()]
+        self.tlas_nodes.as_slice()
     }
 
     /// Number of pixels of the film.

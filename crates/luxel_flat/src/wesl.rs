@@ -3,8 +3,9 @@ use std::fmt::Write as _;
 
 use crate::layout::SharedStruct;
 use crate::{
-    Aov, BvhNode, CameraRecord, Cascade, Counter, DisplayParams, FilmPixel, Instance, LeafSphere,
-    MaterialRecord, OctreeNode, Path, SceneParams, SliceParams, SphereRecord, SvoNode, Triangle,
+    Aov, BvhNode, CameraRecord, Cascade, Counter, DisplayParams, FilmPixel, Instance, LeafSphere, LightNode,
+    LightRecord, MaterialRecord, OctreeNode, Path, SceneParams, SliceParams, SphereRecord, SurfacePoint,
+    SvoNode, TextureSlot, Triangle, TriangleAttributes,
 };
 
 /// Name, fields and size of a shared record.
@@ -28,8 +29,13 @@ pub fn structs() -> Vec<StructRow> {
         row::<Triangle>(),
         row::<SvoNode>(),
         row::<Instance>(),
+        row::<TriangleAttributes>(),
         row::<MaterialRecord>(),
+        row::<TextureSlot>(),
+        row::<LightRecord>(),
+        row::<LightNode>(),
         row::<Path>(),
+        row::<SurfacePoint>(),
         row::<Aov>(),
         row::<Cascade>(),
         row::<FilmPixel>(),
