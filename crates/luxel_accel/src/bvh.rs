@@ -11,20 +11,33 @@
 //! the root is the child of one node, `skip` is the next node behind a subtree in depth-first order, every primitive
 //! is in exactly one leaf, boxes are equal to the union of their primitives' boxes.
 //!
+//! Higher presets ([`BvhQuality`]) improve the finished tree by reinsertion (`reinsert.rs`). There are no spatial splits:
+//! a primitive stands in one leaf, and a hit is known by its place there.
+//!
 //! The result is a pure function of the input: threads share no state, only exact operations (minimum, maximum,
 //! integer sums) are combined across threads, ties go by the primitives' order in the input, and the primitives
 //! of a leaf stand in that order.
 mod bins;
 mod build;
-mod emit;
+mod collapse;
+mod cost;
+mod linked;
+mod options;
+mod primitive;
+mod reinsert;
 mod split;
+mod sweep;
 mod validate;
 
-use luxel_flat::{BvhNode, LEAF_COUNT_SHIFT, MAX_LEAF_SIZE};
+use luxel_flat::{BvhNode, LEAF_COUNT_SHIFT};
 use luxel_geom::Aabb;
 
 use crate::AccelError;
-pub(crate) use split::{Primitive, split};
+pub use cost::sah_cost;
+use linked::LinkedTree;
+pub use options::{BvhOptions, BvhQuality, BvhSplit, MAX_BINS, Reinsertion};
+pub(crate) use primitive::Primitive;
+pub(crate) use split::Splitter;
 pub use validate::depth;
 pub(crate) use validate::validate_tree;
 
@@ -34,21 +47,6 @@ pub const MAX_BVH_DEPTH: u32 = 80;
 /// Largest number of primitives in a tree: its nodes, fewer than twice as many, are numbered with
 /// `LEAF_COUNT_SHIFT` bits.
 pub(crate) const MAX_PRIMITIVES: usize = 1 << (LEAF_COUNT_SHIFT - 1);
-
-/// How a tree is built.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BvhOptions {
-    /// Largest number of primitives in a leaf; held inside 1 to `MAX_LEAF_SIZE`.
-    pub max_leaf_size: u32,
-    /// Cost of a step through an inner node in units of one primitive test.
-    pub traversal_cost: f32,
-}
-
-impl Default for BvhOptions {
-    fn default() -> Self {
-        Self { max_leaf_size: MAX_LEAF_SIZE, traversal_cost: 1.0 }
-    }
-}
 
 /// A tree over primitives that are known by their boxes only.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -69,8 +67,18 @@ pub fn build_bvh(boxes: &[Aabb<f32>], options: &BvhOptions) -> Result<Bvh, Accel
     if boxes.len() > MAX_PRIMITIVES {
         return Err(AccelError::TooManyPrimitives { count: boxes.len() });
     }
-    let (tree, order) = build::build(boxes, options);
-    Ok(Bvh { nodes: emit::emit(tree.as_ref()), order })
+    let options = options.bounded();
+    let is_optimized = options.reinsertion.rounds > 0;
+    // Single primitives can be moved about; which share a leaf is decided afterwards.
+    let first = BvhOptions { max_leaf_size: if is_optimized { 1 } else { options.max_leaf_size }, ..options };
+    let (mut nodes, mut order) = build::build(boxes, &first);
+    if is_optimized && !nodes.is_empty() {
+        let mut tree = LinkedTree::new(&nodes);
+        reinsert::optimize(&mut tree, &options);
+        (nodes, order) = collapse::collapse(&tree, &order, &options);
+    }
+    build::set_skips(&mut nodes);
+    Ok(Bvh { nodes, order })
 }
 
 impl Bvh {

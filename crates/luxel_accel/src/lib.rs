@@ -8,6 +8,7 @@
 //! | octree of cells over spheres | [`CellOctree`] | [`OctreeNode`](luxel_flat::OctreeNode), [`LeafSphere`](luxel_flat::LeafSphere) |
 //! | BVH over spheres | [`SphereBvh`], edited in place | [`BvhNode`](luxel_flat::BvhNode), [`LeafSphere`](luxel_flat::LeafSphere) |
 //! | any of these three, or none | [`SphereStructure`] | as above |
+//! | light tree | [`build_light_tree`] | [`LightNode`](luxel_flat::LightNode) |
 //! | voxel octree | [`build_svo`] | [`SvoNode`](luxel_flat::SvoNode) |
 //!
 //! Exactness rule: a stored box is the exact union (component-wise minimum and maximum) of the outset boxes
@@ -31,6 +32,7 @@
 mod bvh;
 mod cells;
 mod error;
+mod light_tree;
 mod mesh;
 mod octree;
 mod slots;
@@ -41,10 +43,15 @@ mod svo;
 mod tlas;
 mod work;
 
-pub use bvh::{Bvh, BvhOptions, MAX_BVH_DEPTH, build_bvh, depth};
+pub use bvh::{
+    Bvh, BvhOptions, BvhQuality, BvhSplit, MAX_BINS, MAX_BVH_DEPTH, Reinsertion, build_bvh, depth, sah_cost,
+};
 pub use cells::{CELL_BUDGET_BYTES, CellOctree};
 pub use error::AccelError;
-pub use mesh::{MeshBvh, build_mesh};
+pub use light_tree::{
+    LightBounds, LightTree, MAX_LIGHT_DEPTH, MAX_TREE_LIGHTS, build_light_tree, validate_light_tree,
+};
+pub use mesh::{MeshBvh, REBUILD_RATIO, Refit, build_mesh, validate_mesh};
 pub use octree::{OctreeOptions, RootCell, SphereOctree, octree_depth, validate_octree};
 pub use sphere_bvh::SphereBvh;
 pub use sphere_structure::{SphereOptions, SphereStructure};

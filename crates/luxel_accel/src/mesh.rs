@@ -5,7 +5,7 @@ use luxel_geom::{Aabb, triangle};
 use rayon::prelude::*;
 
 use crate::bvh::validate_tree;
-use crate::{AccelError, BvhOptions, build_bvh};
+use crate::{AccelError, BvhOptions, build_bvh, sah_cost};
 
 /// A mesh ready to be placed in the flat scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,24 @@ pub struct MeshBvh {
     pub triangles: Vec<Triangle>,
     /// The root's box in the mesh's coordinates; empty without triangles.
     pub bounds: Aabb<f32>,
+    /// Where each of `triangles` stands in the input.
+    pub order: Vec<u32>,
+    /// [`sah_cost`] of the tree as built.
+    pub built_cost: f64,
 }
+
+/// What a refit made of a tree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refit {
+    /// [`sah_cost`] now.
+    pub cost: f64,
+    /// [`sah_cost`] of the tree as it was built.
+    pub built_cost: f64,
+}
+
+/// A refitted tree that costs more than this many times what it cost when built is worth building anew: tracing it
+/// costs about as much more, and a build about as much as tracing one ray per ten triangles.
+pub const REBUILD_RATIO: f64 = 1.3;
 
 /// Builds the tree of a mesh. `ids[i]` is what a hit on `triangles[i]` reports.
 ///
@@ -38,10 +55,20 @@ pub fn build_mesh(
     let boxes: Vec<Aabb<f32>> = records.par_iter().map(bounds).collect();
     let bvh = build_bvh(&boxes, options)?;
     Ok(MeshBvh {
-        bounds: bvh.nodes.first().map_or_else(Aabb::empty, |n| Aabb { lo: n.lo.into(), hi: n.hi.into() }),
+        bounds: root_bounds(&bvh.nodes),
         triangles: bvh.order.par_iter().map(|&index| records[index as usize]).collect(),
+        order: bvh.order,
+        built_cost: sah_cost(&bvh.nodes),
         nodes: bvh.nodes,
     })
+}
+
+/// Checks nodes against the triangles that their leaves list; see [`Bvh`](crate::Bvh).
+///
+/// # Errors
+/// [`AccelError::Broken`] with the first node at fault.
+pub fn validate_mesh(nodes: &[BvhNode], triangles: &[Triangle]) -> Result<(), AccelError> {
+    validate_tree(nodes, triangles.len(), |index| triangles.get(index as usize).map(bounds))
 }
 
 impl MeshBvh {
@@ -50,10 +77,61 @@ impl MeshBvh {
     /// # Errors
     /// [`AccelError::Broken`] with the first node at fault.
     pub fn validate(&self) -> Result<(), AccelError> {
-        validate_tree(&self.nodes, self.triangles.len(), |index| {
-            self.triangles.get(index as usize).map(bounds)
-        })
+        validate_mesh(&self.nodes, &self.triangles)
     }
+
+    /// Follows a deformation: vertices have moved, the triangles `indices` are those that the tree was built over. The
+    /// tree keeps its shape and all boxes are computed anew from the leaves up (Wald, Boulos, Shirley 2007, "Ray Tracing
+    /// Deformable Scenes Using Dynamic Bounding Volume Hierarchies"): hits are exact as ever, but rays may cost more.
+    ///
+    /// # Errors
+    /// [`AccelError::IdCount`] for another number of triangles, [`AccelError::VertexOutOfRange`],
+    /// [`AccelError::BadTriangle`]; then nothing has changed.
+    pub fn refit(&mut self, positions: &[Vec3], indices: &[[u32; 3]]) -> Result<Refit, AccelError> {
+        if indices.len() != self.triangles.len() {
+            return Err(AccelError::IdCount { triangles: indices.len(), ids: self.triangles.len() });
+        }
+        let moved = |(old, &place): (&Triangle, &u32)| {
+            let new = record(positions, place as usize, indices[place as usize], old.id)?;
+            Ok(Triangle { material: old.material, reserved: old.reserved, ..new })
+        };
+        self.triangles =
+            self.triangles.par_iter().zip(&self.order).map(moved).collect::<Result<_, AccelError>>()?;
+        self.refit_boxes();
+        self.bounds = root_bounds(&self.nodes);
+        Ok(Refit { cost: sah_cost(&self.nodes), built_cost: self.built_cost })
+    }
+
+    /// Children stand behind their parents.
+    fn refit_boxes(&mut self) {
+        for index in (0..self.nodes.len()).rev() {
+            let node = self.nodes[index];
+            let union = if node.is_leaf() {
+                let (first, count) = node.primitives();
+                let listed = &self.triangles[first as usize..(first + count) as usize];
+                listed.iter().map(bounds).fold(Aabb::empty(), |all, one| all.union(&one))
+            } else {
+                let first = node.first_child() as usize;
+                node_bounds(&self.nodes[first]).union(&node_bounds(&self.nodes[first + 1]))
+            };
+            self.nodes[index] = BvhNode { lo: union.lo.into(), hi: union.hi.into(), ..node };
+        }
+    }
+}
+
+impl Refit {
+    /// True if a tree built anew would save more than it costs.
+    pub fn is_rebuild_due(&self) -> bool {
+        self.cost > REBUILD_RATIO * self.built_cost
+    }
+}
+
+fn root_bounds(nodes: &[BvhNode]) -> Aabb<f32> {
+    nodes.first().map_or_else(Aabb::empty, node_bounds)
+}
+
+fn node_bounds(node: &BvhNode) -> Aabb<f32> {
+    Aabb { lo: node.lo.into(), hi: node.hi.into() }
 }
 
 fn bounds(triangle: &Triangle) -> Aabb<f32> {

@@ -36,7 +36,8 @@ const ROOT: u32 = 0;
 const NODES_PER_PATH: usize = 16;
 
 /// How the tree is built. A leaf's spheres are looked through four at a time, so large leaves pay.
-const OPTIONS: BvhOptions = BvhOptions { max_leaf_size: MAX_LEAF_SIZE, traversal_cost: 6.0 };
+const OPTIONS: BvhOptions =
+    BvhOptions { max_leaf_size: MAX_LEAF_SIZE, traversal_cost: 6.0, ..BvhOptions::MEDIUM };
 
 /// A BVH over spheres in slots; see the module's text.
 ///

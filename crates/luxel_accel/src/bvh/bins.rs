@@ -1,23 +1,17 @@
 //! The surface area heuristic over bins along each axis.
-use glam::{DVec3, Vec3A};
+use glam::Vec4;
 use rayon::prelude::*;
 
-use super::split::Primitive;
+use super::primitive::{Bounds, Primitive};
 
-/// Most bins per axis.
-const BINS: usize = 16;
-/// Bins per axis for a set so small that going over the bins costs more than going over the set.
-const FEW_BINS: usize = 8;
-/// The largest such set.
-const FEW_COUNT: usize = 64;
 /// Larger sets are binned in parallel, in pieces of this size.
 const CHUNK: usize = 16_384;
 
 /// Maps centres to bins.
 pub(super) struct Grid {
-    lo: Vec3A,
+    lo: Vec4,
     /// Bins per unit of length; not positive and finite in an axis that cannot be binned.
-    scale: Vec3A,
+    scale: Vec4,
     /// Bins per axis.
     bins: usize,
 }
@@ -30,31 +24,44 @@ pub(super) struct Cut {
     /// First bin of the second half.
     pub(super) bin: usize,
     /// Expected number of primitive tests of a ray that meets the set's box.
-    pub(super) tests: f64,
+    pub(super) tests: f32,
 }
 
-/// Number and box of some primitives.
+/// Number and box of the primitives in a bin.
 #[derive(Clone, Copy)]
 struct Bin {
-    lo: Vec3A,
-    hi: Vec3A,
+    bounds: Bounds,
     count: u32,
 }
 
-type Bins = [[Bin; BINS]; 3];
+/// Room for the bins of a set, kept from set to set.
+#[derive(Default)]
+pub(super) struct Bins {
+    /// The bins of one axis after those of another.
+    bins: Vec<Bin>,
+    /// Box and number of all bins from one on.
+    above: Vec<Bin>,
+}
 
 impl Grid {
-    /// A grid over the box of the centres of `count` primitives.
-    pub(super) fn new(lo: Vec3A, hi: Vec3A, count: usize) -> Self {
-        let bins = if count > FEW_COUNT { BINS } else { FEW_BINS };
-        Self { lo, scale: bins as f32 / (hi - lo), bins }
+    /// A grid over the box of the centres of `count` primitives. A small set gets fewer bins than asked for: going
+    /// over them would cost more than going over the set (as in Wald 2007).
+    pub(super) fn new(centers: &Bounds, count: usize, most_bins: u32) -> Self {
+        let bins = (4 + count / 8).min(most_bins as usize);
+        Self { lo: centers.lo, scale: bins as f32 / (centers.hi - centers.lo), bins }
     }
 
     /// The bin of a centre along each axis.
     #[inline]
-    pub(super) fn bins(&self, center: Vec3A) -> [usize; 3] {
-        let places = (center - self.lo) * self.scale;
-        places.to_array().map(|place| (place as u32 as usize).min(self.bins - 1))
+    fn places(&self, center: Vec4) -> [usize; 3] {
+        let [x, y, z, _] = ((center - self.lo) * self.scale).to_array();
+        [x, y, z].map(|place| (place as i32).clamp(0, self.bins as i32 - 1) as usize)
+    }
+
+    /// True if a centre lies before a cut.
+    #[inline]
+    pub(super) fn is_below(&self, center: Vec4, cut: &Cut) -> bool {
+        self.places(center)[cut.axis] < cut.bin
     }
 
     fn can_bin(&self, axis: usize) -> bool {
@@ -64,78 +71,88 @@ impl Grid {
 
 impl Bin {
     /// The neutral element of [`Bin::with`].
-    const EMPTY: Self = Self { lo: Vec3A::MAX, hi: Vec3A::MIN, count: 0 };
+    const EMPTY: Self = Self { bounds: Bounds::EMPTY, count: 0 };
 
     #[inline]
     fn with(&self, other: &Self) -> Self {
-        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi), count: self.count + other.count }
-    }
-
-    #[inline]
-    fn add(&mut self, primitive: &Primitive) {
-        *self = self.with(&Self { lo: primitive.lo, hi: primitive.hi, count: 1 });
-    }
-
-    /// Half the surface, in double precision: single would overflow.
-    fn area(&self) -> f64 {
-        let e = (self.hi.as_dvec3() - self.lo.as_dvec3()).max(DVec3::ZERO);
-        e.x * e.y + e.y * e.z + e.z * e.x
+        Self { bounds: self.bounds.with(&other.bounds), count: self.count + other.count }
     }
 
     /// Expected tests times area.
-    fn cost(&self) -> f64 {
-        f64::from(self.count) * self.area()
+    #[inline]
+    fn cost(&self, unit: f32) -> f32 {
+        self.count as f32 * self.bounds.half_area(unit)
     }
 }
 
-/// The cheapest cut, or `None` if none saves a test: then the heuristic says nothing.
-pub(super) fn best_cut(primitives: &[Primitive], grid: &Grid) -> Option<Cut> {
-    let bins = fill(primitives, grid);
-    let area = bins[0].iter().fold(Bin::EMPTY, |all, bin| all.with(bin)).area();
-    let mut best: Option<Cut> = None;
-    for axis in (0..3).filter(|&axis| grid.can_bin(axis)) {
-        for (bin, cost) in costs(&bins[axis][..grid.bins]) {
-            let tests = cost / area;
-            if tests.is_finite() && best.is_none_or(|b| tests < b.tests) {
-                best = Some(Cut { axis, bin, tests });
+impl Bins {
+    /// The cheapest cut, or `None` if none saves a test: then the heuristic says nothing.
+    pub(super) fn best_cut(&mut self, primitives: &[Primitive], grid: &Grid) -> Option<Cut> {
+        if self.above.len() < grid.bins {
+            self.bins.resize(3 * grid.bins, Bin::EMPTY);
+            self.above.resize(grid.bins, Bin::EMPTY);
+        }
+        let bins = &mut self.bins[..3 * grid.bins];
+        fill(bins, primitives, grid);
+        let all = bins[..grid.bins].iter().fold(Bin::EMPTY, |all, bin| all.with(bin)).bounds;
+        let unit = all.unit();
+        let mut best: Option<(usize, usize, f32)> = None;
+        for (axis, bins) in bins.chunks(grid.bins).enumerate().filter(|(axis, _)| grid.can_bin(*axis)) {
+            let above = &mut self.above[..grid.bins];
+            for (bin, cost) in costs(bins, above, unit) {
+                if best.is_none_or(|(_, _, least)| cost < least) {
+                    best = Some((axis, bin, cost));
+                }
             }
         }
+        let area = all.half_area(unit);
+        let cut = best.map(|(axis, bin, cost)| Cut { axis, bin, tests: cost / area });
+        cut.filter(|cut| cut.tests < primitives.len() as f32)
     }
-    best.filter(|b| b.tests < primitives.len() as f64)
 }
 
 /// Cost of a cut before each bin, where both sides hold something.
-fn costs(bins: &[Bin]) -> impl Iterator<Item = (usize, f64)> {
-    let mut above = [Bin::EMPTY; BINS];
+fn costs(bins: &[Bin], above: &mut [Bin], unit: f32) -> impl Iterator<Item = (usize, f32)> {
     let mut sum = Bin::EMPTY;
-    for i in (1..bins.len()).rev() {
-        sum = sum.with(&bins[i]);
-        above[i] = sum;
+    for (above, bin) in above.iter_mut().zip(bins).rev() {
+        sum = sum.with(bin);
+        *above = sum;
     }
     let mut below = Bin::EMPTY;
-    (1..bins.len()).filter_map(move |i| {
-        below = below.with(&bins[i - 1]);
-        (below.count > 0 && above[i].count > 0).then(|| (i, below.cost() + above[i].cost()))
+    bins.iter().zip(&above[1..]).enumerate().filter_map(move |(i, (bin, above))| {
+        below = below.with(bin);
+        let cost = || below.cost(unit) + above.cost(unit);
+        (below.count > 0 && above.count > 0).then(|| (i + 1, cost())).filter(|(_, cost)| cost.is_finite())
     })
 }
 
 /// Sorts primitives into bins. Counts, minima and maxima are exact, so pieces may be combined in any order.
-fn fill(primitives: &[Primitive], grid: &Grid) -> Bins {
-    let empty = || [[Bin::EMPTY; BINS]; 3];
-    let fill_chunk = |chunk: &[Primitive]| {
+fn fill(bins: &mut [Bin], primitives: &[Primitive], grid: &Grid) {
+    if primitives.len() <= CHUNK {
+        bins.fill(Bin::EMPTY);
+        return fill_chunk(bins, primitives, grid);
+    }
+    let empty = || vec![Bin::EMPTY; bins.len()];
+    let of_chunk = |chunk: &[Primitive]| {
         let mut bins = empty();
-        for primitive in chunk {
-            for (bins, bin) in bins.iter_mut().zip(grid.bins(primitive.center())) {
-                bins[bin].add(primitive);
-            }
-        }
+        fill_chunk(&mut bins, chunk, grid);
         bins
     };
-    if primitives.len() <= CHUNK {
-        return fill_chunk(primitives);
-    }
-    primitives.par_chunks(CHUNK).map(fill_chunk).reduce(empty, |mut a, b| {
-        a.iter_mut().flatten().zip(b.iter().flatten()).for_each(|(a, b)| *a = a.with(b));
+    let all = primitives.par_chunks(CHUNK).map(of_chunk).reduce(empty, |mut a, b| {
+        a.iter_mut().zip(&b).for_each(|(a, b)| *a = a.with(b));
         a
-    })
+    });
+    bins.copy_from_slice(&all);
+}
+
+fn fill_chunk(bins: &mut [Bin], primitives: &[Primitive], grid: &Grid) {
+    let (x_bins, rest) = bins.split_at_mut(grid.bins);
+    let (y_bins, z_bins) = rest.split_at_mut(grid.bins);
+    for primitive in primitives {
+        let one = Bin { bounds: primitive.bounds(), count: 1 };
+        let [x, y, z] = grid.places(primitive.center());
+        x_bins[x] = x_bins[x].with(&one);
+        y_bins[y] = y_bins[y].with(&one);
+        z_bins[z] = z_bins[z].with(&one);
+    }
 }

@@ -1,55 +1,74 @@
 //! Where a set of primitives is cut in two.
-use glam::Vec3A;
-use luxel_geom::Aabb;
-
-use super::bins::{self, Grid};
-use super::{BvhOptions, MAX_BVH_DEPTH};
+use super::bins::{Bins, Cut, Grid};
+use super::primitive::{Bounds, Primitive};
+use super::sweep::{self, MAX_SWEEP};
+use super::{BvhOptions, BvhSplit, MAX_BVH_DEPTH};
 
 /// Below this depth nodes are cut at their median only.
 const MAX_SAH_DEPTH: u32 = 60;
 
-/// A primitive on its way into a leaf.
-#[derive(Clone, Copy)]
-pub(crate) struct Primitive {
-    /// Lower corner of its box.
-    pub(crate) lo: Vec3A,
-    /// Upper corner of its box.
-    pub(crate) hi: Vec3A,
-    /// Position in the input.
-    pub(crate) index: u32,
+/// Cuts sets of primitives; keeps the room that it takes.
+pub(crate) struct Splitter {
+    options: BvhOptions,
+    bins: Bins,
 }
 
-impl Primitive {
-    /// The primitive at a position of the input.
-    pub(crate) fn new(index: usize, bounds: Aabb<f32>) -> Self {
-        Self { lo: bounds.lo.into(), hi: bounds.hi.into(), index: index as u32 }
-    }
-
-    /// Centre of the box, formed so that it does not overflow.
-    #[inline]
-    pub(crate) fn center(&self) -> Vec3A {
-        self.lo * 0.5 + self.hi * 0.5
-    }
+/// A set that was cut.
+pub(super) struct Halves {
+    /// Where the second half starts.
+    pub(super) middle: usize,
+    /// Boxes of the centres of both halves, where they are known.
+    pub(super) centers: Option<[Bounds; 2]>,
 }
 
-/// Reorders the primitives and returns where the second half starts, or `None` for a leaf.
-pub(crate) fn split(primitives: &mut [Primitive], depth: u32, options: &BvhOptions) -> Option<usize> {
-    let count = primitives.len();
-    let may_be_leaf = count <= options.max_leaf_size as usize;
-    // No cut of so few would pay.
-    if count <= 1 || (may_be_leaf && count as f32 <= options.traversal_cost) {
-        return None;
+impl Splitter {
+    pub(crate) fn new(options: &BvhOptions) -> Self {
+        Self { options: options.bounded(), bins: Bins::default() }
     }
-    if depth < MAX_SAH_DEPTH && depth + levels_of_medians(count) < MAX_BVH_DEPTH {
-        let (lo, hi) = centroid_bounds(primitives);
-        let grid = Grid::new(lo, hi, count);
-        if let Some(cut) = bins::best_cut(primitives, &grid) {
-            let is_worth_it = f64::from(options.traversal_cost) + cut.tests < count as f64;
-            let take = is_worth_it || !may_be_leaf;
-            return take.then(|| partition(primitives, |p| grid.bins(p.center())[cut.axis] < cut.bin));
+
+    /// Reorders the primitives and returns where the second half starts, or `None` for a leaf.
+    pub(crate) fn split(&mut self, primitives: &mut [Primitive], depth: u32) -> Option<usize> {
+        self.halve(primitives, depth, None).map(|halves| halves.middle)
+    }
+
+    /// The same; `centers` is the box of the primitives' centres, if it is known.
+    pub(super) fn halve(
+        &mut self,
+        primitives: &mut [Primitive],
+        depth: u32,
+        centers: Option<Bounds>,
+    ) -> Option<Halves> {
+        let count = primitives.len();
+        let may_be_leaf = count <= self.options.max_leaf_size as usize;
+        // No cut of so few would pay.
+        if count <= 1 || (may_be_leaf && count as f32 <= self.options.traversal_cost) {
+            return None;
         }
+        let by_cost = self.options.split == BvhSplit::Sah
+            && depth < MAX_SAH_DEPTH
+            && depth + levels_of_medians(count) < MAX_BVH_DEPTH;
+        if by_cost && count <= MAX_SWEEP {
+            if let Some((middle, tests)) = sweep::best_cut(primitives) {
+                return self.take(count, tests).then_some(Halves { middle, centers: None });
+            }
+        } else if by_cost {
+            let grid = Grid::new(
+                &centers.unwrap_or_else(|| Bounds::of_centers(primitives)),
+                count,
+                self.options.bins,
+            );
+            if let Some(cut) = self.bins.best_cut(primitives, &grid) {
+                return self.take(count, cut.tests).then(|| partition(primitives, &grid, &cut));
+            }
+        }
+        (!may_be_leaf).then(|| Halves { middle: split_at_median(primitives), centers: None })
     }
-    (!may_be_leaf).then(|| split_at_median(primitives))
+
+    /// True if a set that may be cut with an expected number of tests is to be cut.
+    fn take(&self, count: usize, tests: f32) -> bool {
+        let is_worth_it = self.options.traversal_cost + tests < count as f32;
+        is_worth_it || count > self.options.max_leaf_size as usize
+    }
 }
 
 /// Levels below a node of `count` primitives if every cut is a median: ⌈log₂ count⌉.
@@ -60,27 +79,26 @@ fn levels_of_medians(count: usize) -> u32 {
     count.next_power_of_two().trailing_zeros()
 }
 
-/// The box of the primitives' centres.
-fn centroid_bounds(primitives: &[Primitive]) -> (Vec3A, Vec3A) {
-    let first = primitives[0].center();
-    primitives.iter().fold((first, first), |(lo, hi), p| (lo.min(p.center()), hi.max(p.center())))
-}
-
-/// Moves the primitives for which `is_first` holds to the front and returns their number.
-fn partition(primitives: &mut [Primitive], is_first: impl Fn(&Primitive) -> bool) -> usize {
-    let mut first = 0;
+/// Moves the primitives below a cut to the front. Without branches: which side the next one goes to cannot be
+/// foreseen.
+fn partition(primitives: &mut [Primitive], grid: &Grid, cut: &Cut) -> Halves {
+    let mut middle = 0;
+    let mut centers = [Bounds::EMPTY; 2];
     for i in 0..primitives.len() {
-        if is_first(&primitives[i]) {
-            primitives.swap(i, first);
-            first += 1;
-        }
+        let center = primitives[i].center();
+        let is_below = grid.is_below(center, cut);
+        primitives.swap(i, middle);
+        middle += usize::from(is_below);
+        let side = &mut centers[usize::from(!is_below)];
+        *side = side.with_point(center);
     }
-    first
+    Halves { middle, centers: Some(centers) }
 }
 
-/// Halves the primitives in the order of their centres along the widest axis, equal centres by index.
+/// Halves the primitives in the order of their centres along the axis in which they spread most, equal centres by
+/// index.
 fn split_at_median(primitives: &mut [Primitive]) -> usize {
-    let (lo, hi) = centroid_bounds(primitives);
+    let Bounds { lo, hi } = Bounds::of_centers(primitives);
     let extent = hi - lo;
     let axis = if extent.x >= extent.y && extent.x >= extent.z {
         0
@@ -91,34 +109,41 @@ fn split_at_median(primitives: &mut [Primitive]) -> usize {
     };
     let middle = primitives.len() / 2;
     primitives.select_nth_unstable_by(middle, |a, b| {
-        a.center()[axis].total_cmp(&b.center()[axis]).then(a.index.cmp(&b.index))
+        a.center()[axis].total_cmp(&b.center()[axis]).then(a.index().cmp(&b.index()))
     });
     middle
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::{Vec3, Vec4};
+    use luxel_geom::Aabb;
+
     use super::*;
 
     fn points(centers: impl IntoIterator<Item = f32>) -> Vec<Primitive> {
-        let point = |(i, x)| Primitive::new(i, Aabb { lo: glam::Vec3::splat(x), hi: glam::Vec3::splat(x) });
+        let point = |(i, x)| Primitive::new(i, Aabb { lo: Vec3::splat(x), hi: Vec3::splat(x) });
         centers.into_iter().enumerate().map(point).collect()
+    }
+
+    fn split(primitives: &mut [Primitive], depth: u32) -> Option<usize> {
+        Splitter::new(&BvhOptions::default()).split(primitives, depth)
     }
 
     #[test]
     fn medians_of_equal_centres_go_by_index() {
         let mut primitives = points([3.0; 11]);
-        let middle = split(&mut primitives, 0, &BvhOptions::default()).unwrap();
+        let middle = split(&mut primitives, 0).unwrap();
         assert_eq!(middle, 5);
-        assert!(primitives[..middle].iter().all(|p| p.index < 5));
+        assert!(primitives[..middle].iter().all(|p| p.index() < 5));
     }
 
     #[test]
     fn numbers_that_are_not_finite_do_not_stop_the_cut() {
         for x in [f32::NAN, f32::INFINITY, f32::MAX] {
             let mut primitives = points((0..40).map(|i| if i % 3 == 0 { x } else { i as f32 }));
-            (primitives[5].lo, primitives[5].hi) = (Vec3A::MIN, Vec3A::MIN);
-            let middle = split(&mut primitives, 0, &BvhOptions::default()).unwrap();
+            (primitives[5].lo, primitives[5].hi) = (Vec4::MIN, Vec4::MIN);
+            let middle = split(&mut primitives, 0).unwrap();
             assert!(middle > 0 && middle < 40);
         }
     }
@@ -126,8 +151,17 @@ mod tests {
     #[test]
     fn near_the_depth_bound_cuts_are_medians() {
         let mut primitives = points((0..64).map(|i| if i == 63 { 1e6 } else { i as f32 * 1e-3 }));
-        assert_ne!(split(&mut primitives, 0, &BvhOptions::default()), Some(32));
-        assert_eq!(split(&mut primitives, MAX_SAH_DEPTH, &BvhOptions::default()), Some(32));
+        assert_ne!(split(&mut primitives, 0), Some(32));
+        assert_eq!(split(&mut primitives, MAX_SAH_DEPTH), Some(32));
+    }
+
+    #[test]
+    fn the_largest_axis_is_cut_at_its_median() {
+        let mut primitives = points((0..64).map(|i| (i * i * i) as f32));
+        let options = BvhOptions { split: BvhSplit::LargestAxis, ..BvhOptions::default() };
+        assert_eq!(Splitter::new(&options).split(&mut primitives, 0), Some(32));
+        assert!(primitives[..32].iter().all(|p| p.index() < 32));
+        assert_eq!(Splitter::new(&options).split(&mut primitives[..8], 0), None);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use luxel_geom::Aabb;
 
 use super::{OPTIONS, ROOT, SphereBvh, bounds, leaf_sphere_bounds};
 use crate::MAX_BVH_DEPTH;
-use crate::bvh::{Primitive, split};
+use crate::bvh::{Primitive, Splitter};
 
 /// Where a sphere goes.
 enum Place {
@@ -72,7 +72,7 @@ impl SphereBvh {
         spheres.push(sphere);
         let boxes = spheres.iter().map(leaf_sphere_bounds).enumerate();
         let mut primitives: Vec<_> = boxes.map(|(index, bounds)| Primitive::new(index, bounds)).collect();
-        let middle = split(&mut primitives, depth, &OPTIONS).filter(|_| depth < MAX_BVH_DEPTH);
+        let middle = Splitter::new(&OPTIONS).split(&mut primitives, depth).filter(|_| depth < MAX_BVH_DEPTH);
         if middle.is_none() && spheres.len() > MAX_LEAF_SIZE as usize {
             return false;
         }
@@ -80,7 +80,7 @@ impl SphereBvh {
         self.free_entries(first, count, revision);
         match middle {
             Some(middle) => {
-                let spheres: Vec<_> = primitives.iter().map(|p| spheres[p.index as usize]).collect();
+                let spheres: Vec<_> = primitives.iter().map(|p| spheres[p.index() as usize]).collect();
                 self.halve(leaf, spheres.split_at(middle), revision);
             }
             None => self.list(leaf, &spheres, revision),

@@ -1,0 +1,160 @@
+//! Presets, costs and refits of trees.
+#![allow(clippy::unwrap_used)]
+use glam::Vec3;
+use luxel_accel::{
+    BvhOptions, BvhQuality, BvhSplit, MAX_BVH_DEPTH, MeshBvh, Reinsertion, build_bvh, build_mesh, depth,
+    sah_cost,
+};
+use luxel_geom::Aabb;
+use luxel_testkit::{Random, TestMesh, meshes, spheres};
+use proptest::prelude::*;
+
+fn build(mesh: &TestMesh, options: &BvhOptions) -> MeshBvh {
+    let built = build_mesh(&mesh.positions, &mesh.triangles, &mesh.ids(), options).unwrap();
+    built.validate().unwrap();
+    built
+}
+
+/// Inputs that make reinsertion search far, go deep, or gain nothing.
+fn hard_cases() -> Vec<Vec<Aabb<f32>>> {
+    let powers = (-60..=60).map(|i| (i as f32).exp2());
+    let chain = powers.map(|x| Aabb { lo: Vec3::splat(0.9 * x), hi: Vec3::splat(1.1 * x) });
+    let nested = spheres::nested(3000, 1.0);
+    let ball = |s: &luxel_flat::SphereRecord| luxel_geom::sphere::bounds(s.center.into(), s.radius);
+    vec![
+        chain.collect(),
+        nested.iter().map(ball).collect(),
+        meshes::identical(3000).boxes(),
+        meshes::colinear(3000).boxes(),
+        meshes::coplanar_quads(30).boxes(),
+        meshes::soup(5, 3000, 0.6).boxes(),
+    ]
+}
+
+#[test]
+fn presets_cost_less_from_one_to_the_next() {
+    for mesh in [meshes::bumpy_sphere(60, 120), meshes::soup(1, 10_000, 0.2)] {
+        let costs = BvhQuality::ALL.map(|quality| build(&mesh, &quality.options()).built_cost);
+        assert!(costs.windows(2).all(|pair| pair[1] <= 1.01 * pair[0]), "{costs:?}");
+        assert!(costs[3] < 0.99 * costs[1], "{costs:?}");
+        let largest_axis = BvhOptions { split: BvhSplit::LargestAxis, ..BvhOptions::default() };
+        assert!(build(&mesh, &largest_axis).built_cost > 1.1 * costs[1]);
+    }
+}
+
+#[test]
+fn every_preset_gives_a_valid_tree_of_bounded_depth() {
+    for boxes in hard_cases() {
+        for quality in BvhQuality::ALL {
+            let bvh = build_bvh(&boxes, &quality.options()).unwrap();
+            bvh.validate(&boxes).unwrap();
+            assert!(depth(&bvh.nodes) <= MAX_BVH_DEPTH);
+        }
+    }
+}
+
+#[test]
+fn reinsertion_never_makes_a_tree_dearer() {
+    for boxes in hard_cases() {
+        let of = |rounds| {
+            let reinsertion = Reinsertion { rounds, share: 1.0 };
+            sah_cost(&build_bvh(&boxes, &BvhOptions { reinsertion, ..BvhOptions::default() }).unwrap().nodes)
+        };
+        let costs = [1, 2, 4, 8].map(of);
+        assert!(costs.windows(2).all(|pair| pair[1] <= pair[0] * (1.0 + 1e-5)), "{costs:?}");
+    }
+}
+
+#[test]
+fn reinsertion_does_not_depend_on_the_number_of_threads() {
+    let boxes = meshes::soup(2, 20_000, 0.3).boxes();
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| build_bvh(&boxes, &BvhQuality::High.options()).unwrap())
+    };
+    let one = with(1);
+    assert!([2, 3, 8].into_iter().all(|threads| with(threads) == one));
+}
+
+#[test]
+fn a_power_of_two_changes_no_tree() {
+    let mesh = meshes::bumpy_sphere(30, 60);
+    for quality in BvhQuality::ALL {
+        let unit = build(&mesh, &quality.options());
+        for exponent in [-60, -20, -1, 20, 55] {
+            let scaled = build(&mesh.map(|p| p * (exponent as f32).exp2()), &quality.options());
+            assert_eq!(scaled.order, unit.order, "2^{exponent}, {}", quality.name());
+            assert!(scaled.nodes.iter().zip(&unit.nodes).all(|(a, b)| (a.leaf, a.skip) == (b.leaf, b.skip)));
+        }
+    }
+}
+
+#[test]
+fn more_bins_are_a_setting_that_is_heeded() {
+    let mesh = meshes::bumpy_sphere(60, 120);
+    let cost = |bins| build(&mesh, &BvhOptions { bins, ..BvhOptions::default() }).built_cost;
+    assert!(cost(2) > 1.02 * cost(16), "{} {}", cost(2), cost(16));
+    assert_eq!(cost(0), cost(2));
+    assert_eq!(cost(64), cost(1000));
+}
+
+#[test]
+fn e04_a_refit_follows_the_vertices_and_says_when_to_build_anew() {
+    let mesh = meshes::bumpy_sphere(40, 80);
+    let mut built = build(&mesh, &BvhOptions::default());
+    let same = built.clone().refit(&mesh.positions, &mesh.triangles).unwrap();
+    assert_eq!((same.cost, same.is_rebuild_due()), (built.built_cost, false));
+
+    let bent = mesh.map(|p| p + 0.2 * Vec3::new(p.y.sin(), 0.0, p.x * p.x));
+    let refit = built.refit(&bent.positions, &bent.triangles).unwrap();
+    built.validate().unwrap();
+    assert!(!refit.is_rebuild_due(), "{refit:?}");
+    let fresh = build(&bent, &BvhOptions::default());
+    assert_eq!(built.bounds, fresh.bounds);
+    let sorted = |bvh: &MeshBvh| {
+        let mut all = bvh.triangles.clone();
+        all.sort_by_key(|t| t.id);
+        all
+    };
+    assert_eq!(sorted(&built), sorted(&fresh));
+
+    let mut random = Random::new(4);
+    let mut torn = mesh.clone();
+    torn.positions.iter_mut().for_each(|p| *p += random.point(0.7));
+    let refit = built.refit(&torn.positions, &torn.triangles).unwrap();
+    built.validate().unwrap();
+    assert!(refit.is_rebuild_due(), "{refit:?}");
+    assert!(build(&torn, &BvhOptions::default()).built_cost < refit.cost);
+}
+
+#[test]
+fn a_refit_that_fails_changes_nothing() {
+    let mesh = meshes::soup(3, 100, 0.2);
+    let mut built = build(&mesh, &BvhOptions::default());
+    let before = built.clone();
+    assert!(built.refit(&mesh.positions, &mesh.triangles[1..]).is_err());
+    assert!(built.refit(&mesh.positions[..5], &mesh.triangles).is_err());
+    assert!(built.refit(&mesh.map(|p| p * f32::NAN).positions, &mesh.triangles).is_err());
+    assert_eq!(built, before);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn any_boxes_survive_reinsertion(
+        corners in proptest::collection::vec((any::<[i8; 3]>(), any::<[u8; 3]>(), -100i32..100), 0..200),
+        max_leaf_size in 1u32..9,
+    ) {
+        let boxes: Vec<Aabb<f32>> = corners.iter().map(|(lo, extent, exponent)| {
+            let scale = (*exponent as f32).exp2();
+            let lo = Vec3::from(lo.map(f32::from));
+            Aabb { lo: lo * scale, hi: (lo + Vec3::from(extent.map(f32::from))) * scale }
+        }).collect();
+        let options = BvhOptions { max_leaf_size, ..BvhQuality::Best.options() };
+        let bvh = build_bvh(&boxes, &options).unwrap();
+        prop_assert_eq!(bvh.validate(&boxes), Ok(()));
+        prop_assert!(depth(&bvh.nodes) <= MAX_BVH_DEPTH);
+        prop_assert!(bvh.nodes.iter().all(|n| n.primitives().1 <= max_leaf_size));
+    }
+}
