@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
-use crate::assets::{Dropped, MeshAsset, MeshSource, VolumeAsset, VolumeSource};
+use crate::assets::{Dropped, ImageAsset, ImageSource, MeshAsset, MeshSource, VolumeAsset, VolumeSource};
 use crate::error::SceneError;
-use crate::file::{Checked, check_mesh_source, check_volume_source, mesh_asset, volume_asset};
-use crate::import::{ObjCache, canonical};
+use crate::file::{
+    Checked, check_image_source, check_mesh_source, check_volume_source, mesh_asset, volume_asset,
+};
+use crate::import::{Models, canonical};
 use crate::procedural;
 use crate::report::LoadReport;
 
@@ -19,14 +21,33 @@ impl MeshAsset {
         let source = match source {
             MeshSource::File(path) => MeshSource::File(canonical(&path)?),
             MeshSource::FilePart(path, part) => MeshSource::FilePart(canonical(&path)?, part),
+            MeshSource::ModelPrimitive { path, mesh, primitive } => {
+                MeshSource::ModelPrimitive { path: canonical(&path)?, mesh, primitive }
+            }
             recipe => recipe,
         };
-        mesh_asset(source, &mut ObjCache::default())
+        mesh_asset(source, &mut Models::default())
     }
 
     /// The unit square that grounds and walls are made of; see [`MeshSource::Quad`].
     pub(crate) fn quad() -> Self {
         Self { mesh: procedural::quad(), source: MeshSource::Quad, dropped: Dropped::default() }
+    }
+}
+
+impl ImageAsset {
+    /// Follows `source`; a file's path is relative to the current folder.
+    ///
+    /// # Errors
+    /// Numbers of a recipe that are out of range; a file that cannot be used.
+    pub fn from_source(source: ImageSource) -> Result<Self, SceneError> {
+        name_flaw("image", check_image_source(&source))?;
+        let source = match source {
+            ImageSource::File(path) => ImageSource::File(canonical(&path)?),
+            ImageSource::ModelImage(path, number) => ImageSource::ModelImage(canonical(&path)?, number),
+            recipe => recipe,
+        };
+        Models::default().image(source)
     }
 }
 

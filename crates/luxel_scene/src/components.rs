@@ -91,22 +91,52 @@ pub struct VoxelVolume {
     pub volume: AssetId,
 }
 
-/// A thin-lens perspective camera. It looks down its −Z with +Y up, as in glTF.
+/// A camera. It looks down its −Z with +Y up, as in glTF.
 #[derive(Component, Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[require(Transform)]
 pub struct Camera {
-    /// Angle between the lower and the upper edge of the picture, radians, in (0, π).
-    pub vertical_fov: f64,
-    /// Metres; 0 is a pinhole: everything is sharp.
+    /// How the scene is projected on the film.
+    pub projection: Projection,
+    /// Metres; 0 is a pinhole: everything is sharp. Without effect in orthographic projection.
     pub lens_radius: f64,
     /// Metres from the lens to the plane that is sharp; positive.
     pub focus_distance: f64,
 }
 
+/// How a scene is projected on the film.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+pub enum Projection {
+    /// Through one point, or a thin lens.
+    Perspective {
+        /// Angle between the lower and the upper edge of the picture, radians, in (0, π).
+        vertical_fov: f64,
+    },
+    /// By parallel rays.
+    Orthographic {
+        /// Metres from the lower to the upper edge of the picture, positive.
+        height: f64,
+    },
+}
+
+impl Camera {
+    /// A pinhole of a field of view in radians.
+    pub fn pinhole(vertical_fov: f64) -> Self {
+        Self { projection: Projection::Perspective { vertical_fov }, lens_radius: 0.0, focus_distance: 1.0 }
+    }
+}
+
 impl Default for Camera {
     fn default() -> Self {
-        Self { vertical_fov: 40f64.to_radians(), lens_radius: 0.0, focus_distance: 1.0 }
+        Self::pinhole(40f64.to_radians())
     }
+}
+
+/// Gives a mesh's surface smooth normals, whatever normals its file has.
+#[derive(Component, Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct SmoothNormals {
+    /// Radians, in [0, π]: edges between faces that differ by more stay sharp; 0 is flat shading.
+    pub crease_angle: f32,
 }
 
 /// Marks the one camera entity that the picture is taken with.

@@ -23,7 +23,7 @@ pub enum SceneError {
         path: PathBuf,
     },
     /// Nothing that this crate reads ends like that.
-    #[error("{}: unknown kind of file; a scene (.ron) or a model (.obj, .vox) is expected", path.display())]
+    #[error("{}: unknown kind of file; a scene (.ron) or a model (.gltf, .glb, .obj, .ply, .vox) is expected", path.display())]
     UnknownKind {
         /// The file.
         path: PathBuf,

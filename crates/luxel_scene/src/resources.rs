@@ -4,6 +4,8 @@ use bevy_ecs::prelude::Resource;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::assets::AssetId;
+
 /// Radiance from infinitely far away, linear Rec.709.
 #[derive(Resource, Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -19,6 +21,21 @@ pub enum Environment {
         /// Straight down.
         ground: Vec3,
     },
+    /// A picture all around: equirectangular, its middle towards −Z, its upper edge straight up (+Y).
+    Map {
+        /// Which image of [`Assets`](crate::Assets).
+        image: AssetId,
+        /// Radians by which the picture is turned about +Y, counter-clockwise seen from above.
+        #[serde(default)]
+        rotation: f64,
+        /// Factor on its radiance, not negative.
+        #[serde(default = "full")]
+        strength: f32,
+    },
+}
+
+fn full() -> f32 {
+    1.0
 }
 
 impl Default for Environment {
@@ -46,6 +63,18 @@ pub enum ToneMapping {
     AgX,
 }
 
+/// How paths find lights. All give the same picture; they differ in noise.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default, Serialize, Deserialize)]
+pub enum LightSampling {
+    /// Lights and scattering are both sampled and weighted by the power heuristic (multiple importance sampling).
+    #[default]
+    Mis,
+    /// Lights are sampled (next-event estimation); scattering counts only where lights cannot be.
+    Nee,
+    /// Lights are found by scattering, but for those without extent.
+    Bsdf,
+}
+
 /// How the picture of the scene is made when nobody says otherwise.
 #[derive(Resource, Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -66,6 +95,13 @@ pub struct RenderSettings {
     pub exposure: f32,
     /// The curve from radiance to display.
     pub tone_map: ToneMapping,
+    /// How paths find lights.
+    #[serde(skip_serializing_if = "is_mis")]
+    pub light_sampling: LightSampling,
+}
+
+fn is_mis(sampling: &LightSampling) -> bool {
+    *sampling == LightSampling::Mis
 }
 
 impl Default for RenderSettings {
@@ -79,6 +115,7 @@ impl Default for RenderSettings {
             seed: 1,
             exposure: 0.0,
             tone_map: ToneMapping::default(),
+            light_sampling: LightSampling::default(),
         }
     }
 }

@@ -1,15 +1,22 @@
 //! Load → save → load gives the same world, bit for bit.
 #![allow(clippy::unwrap_used)]
 
+mod any_world;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
 use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::{Entity, EntityRef, World};
-use glam::{DQuat, DVec3, Vec3};
+use glam::DQuat;
 use luxel_scene::*;
 use proptest::prelude::*;
+
+use any_world::{
+    AnyEntity, Kind, any_entity, any_environment, any_mesh_structure, any_settings, any_sphere_cloud,
+    with_images,
+};
 
 /// Everything of one entity, floats as bits where `PartialEq` would blur them.
 #[derive(Debug, PartialEq)]
@@ -21,7 +28,10 @@ struct Snapshot {
     mesh: Option<MeshInstance>,
     volume: Option<VoxelVolume>,
     material: Option<(String, [u32; 3])>,
-    camera: Option<[u64; 3]>,
+    camera: Option<(String, [u64; 2])>,
+    textures: Option<MaterialTextures>,
+    smooth: Option<SmoothNormals>,
+    lights: (Option<PointLight>, Option<SpotLight>, Option<DistantLight>),
     active: bool,
     visible: Option<Visibility>,
 }
@@ -39,12 +49,12 @@ fn snapshot(world: &World) -> BTreeMap<StableId, Snapshot> {
             });
             let material = entity.get::<Material>().map(|m| {
                 // Debug prints the shortest text that reads back to the same bits, sign included.
-                (format!("{:?}", m.surface), m.emission.to_array().map(f32::to_bits))
+                (format!("{:?} {:?}", m.surface, m.opacity), m.emission.to_array().map(f32::to_bits))
             });
             let parent = entity.get::<ChildOf>().map(|c| *world.get::<StableId>(c.parent()).unwrap());
-            let camera = entity
-                .get::<Camera>()
-                .map(|c| [c.vertical_fov, c.lens_radius, c.focus_distance].map(f64::to_bits));
+            let camera = entity.get::<Camera>().map(|c| {
+                (format!("{:?}", c.projection), [c.lens_radius, c.focus_distance].map(f64::to_bits))
+            });
             let value = Snapshot {
                 name: entity.get().cloned(),
                 parent,
@@ -54,6 +64,9 @@ fn snapshot(world: &World) -> BTreeMap<StableId, Snapshot> {
                 volume: entity.get().copied(),
                 material,
                 camera,
+                textures: entity.get().copied(),
+                smooth: entity.get().copied(),
+                lights: (entity.get().copied(), entity.get().copied(), entity.get().copied()),
                 active: entity.contains::<ActiveCamera>(),
                 visible: entity.get().copied(),
             };
@@ -68,6 +81,7 @@ fn assert_same(a: &World, b: &World) {
     assert_eq!(a.resource::<Environment>(), b.resource::<Environment>());
     assert_eq!(a.resource::<RenderSettings>(), b.resource::<RenderSettings>());
     assert_eq!(a.resource::<SphereCloud>(), b.resource::<SphereCloud>());
+    assert_eq!(a.resource::<MeshStructure>(), b.resource::<MeshStructure>());
     assert_eq!(a.resource::<StableIds>(), b.resource::<StableIds>());
     assert_eq!(world_hash(a).unwrap(), world_hash(b).unwrap());
 }
@@ -78,154 +92,17 @@ fn load_new(path: &Path) -> World {
     world
 }
 
-/// Any finite number, tiny and huge ones and −0 among them.
-fn any_f64() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        -10.0..10.0,
-        proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL | proptest::num::f64::ZERO,
-    ]
-}
-
-fn any_dvec3() -> impl Strategy<Value = DVec3> {
-    (any_f64(), any_f64(), any_f64()).prop_map(DVec3::from)
-}
-
-fn positive_f64() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        1e-3..10.0,
-        proptest::num::f64::POSITIVE | proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL
-    ]
-}
-
-fn any_colour(max: f32) -> impl Strategy<Value = Vec3> {
-    let channel = || prop_oneof![0.0..=max, Just(0.0), Just(max), Just(1e-42f32)];
-    (channel(), channel(), channel()).prop_map(Vec3::from)
-}
-
-fn any_transform() -> impl Strategy<Value = Transform> {
-    let rotation = prop_oneof![
-        Just(DQuat::IDENTITY),
-        Just(-DQuat::IDENTITY),
-        (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64, 0.1..1.0f64)
-            .prop_map(|(x, y, z, w)| DQuat::from_xyzw(x, y, z, w).normalize()),
-    ];
-    let scale = any_dvec3().prop_map(|s| DVec3::select(s.cmpeq(DVec3::ZERO), DVec3::ONE, s));
-    prop_oneof![
-        1 => Just(Transform::default()),
-        4 => (any_dvec3(), rotation, scale).prop_map(|(translation, rotation, scale)| Transform {
-            translation,
-            rotation,
-            scale
-        }),
-    ]
-}
-
-fn any_material() -> impl Strategy<Value = Material> {
-    let surface = prop_oneof![
-        any_colour(1.0).prop_map(|albedo| Surface::Lambert { albedo }),
-        (any_colour(1.0), 0f32..=1.0).prop_map(|(albedo, fuzz)| Surface::Metal { albedo, fuzz }),
-        (1f32..4.0).prop_map(|ior| Surface::Dielectric { ior }),
-    ];
-    (surface, any_colour(1e30)).prop_map(|(surface, emission)| Material { surface, emission })
-}
-
-#[derive(Debug, Clone)]
-enum Kind {
-    Group,
-    Sphere(f64),
-    Mesh(usize),
-    Volume(usize),
-    Camera(Camera),
-}
-
-#[derive(Debug, Clone)]
-struct AnyEntity {
-    kind: Kind,
-    name: Option<String>,
-    parent: Option<prop::sample::Index>,
-    transform: Transform,
-    material: Option<Material>,
-    visible: Option<bool>,
-    deleted: bool,
-}
-
-fn any_entity() -> impl Strategy<Value = AnyEntity> {
-    let camera = (1e-6..3.125, prop_oneof![Just(0.0), 1e-9..1.0], positive_f64());
-    let kind = prop_oneof![
-        Just(Kind::Group),
-        positive_f64().prop_map(Kind::Sphere),
-        (0usize..4).prop_map(Kind::Mesh),
-        (0usize..3).prop_map(Kind::Volume),
-        camera.prop_map(|(vertical_fov, lens_radius, focus_distance)| Kind::Camera(Camera {
-            vertical_fov,
-            lens_radius,
-            focus_distance,
-        })),
-    ];
-    (
-        kind,
-        proptest::option::of(".*"),
-        proptest::option::of(any::<prop::sample::Index>()),
-        any_transform(),
-        proptest::option::of(any_material()),
-        any::<Option<bool>>(),
-        proptest::bool::weighted(0.1),
-    )
-        .prop_map(|(kind, name, parent, transform, material, visible, deleted)| AnyEntity {
-            kind,
-            name,
-            parent,
-            transform,
-            material,
-            visible,
-            deleted,
-        })
-}
-
-fn any_environment() -> impl Strategy<Value = Environment> {
-    let three = (any_colour(1e6), any_colour(1e6), any_colour(1e6));
-    prop_oneof![
-        any_colour(1e6).prop_map(Environment::Constant),
-        three.prop_map(|(zenith, horizon, ground)| Environment::Gradient { zenith, horizon, ground }),
-    ]
-}
-
-fn any_settings() -> impl Strategy<Value = RenderSettings> {
-    let tone_map = prop_oneof![
-        Just(ToneMapping::None),
-        Just(ToneMapping::Reinhard),
-        Just(ToneMapping::Aces),
-        Just(ToneMapping::AgX)
-    ];
-    let sizes = (1u32..=16384, 1u32..=16384, 1u32.., 0u32..=65535);
-    (sizes, any::<u32>(), any::<u32>(), -64f32..=64.0, tone_map).prop_map(
-        |((width, height, spp, max_depth), roulette_depth, seed, exposure, tone_map)| RenderSettings {
-            width,
-            height,
-            spp,
-            max_depth,
-            roulette_depth,
-            seed,
-            exposure,
-            tone_map,
-        },
-    )
-}
-
-fn any_sphere_cloud() -> impl Strategy<Value = SphereCloud> {
-    let accel = prop::sample::select(SphereAccel::NAMES).prop_map(|(_, accel)| accel);
-    let given = (accel, 0..=MAX_CLOUD_DEPTH, 0..=MAX_LEAF_SPHERES);
-    let given =
-        given.prop_map(|(accel, max_depth, min_spheres)| SphereCloud { accel, max_depth, min_spheres });
-    prop_oneof![1 => Just(SphereCloud::default()), 4 => given]
-}
-
 /// A world with assets of every kind of source, the files in `folder`.
 fn build(folder: &Path, entities: &[AnyEntity], environment: Environment, settings: RenderSettings) -> World {
     let mut world = empty_world();
-    world.insert_resource(environment);
     world.insert_resource(settings);
-    let (meshes, volumes) = insert_assets(folder, &mut world.resource_mut::<Assets>());
+    let (meshes, volumes, images) = insert_assets(folder, &mut world.resource_mut::<Assets>());
+    world.insert_resource(match environment {
+        Environment::Map { image, rotation, strength } => {
+            Environment::Map { image: images[image.0 as usize], rotation, strength }
+        }
+        other => other,
+    });
     let mut spawned: Vec<Entity> = Vec::new();
     let mut has_camera = false;
     for entity in entities {
@@ -236,6 +113,9 @@ fn build(folder: &Path, entities: &[AnyEntity], environment: Environment, settin
             Kind::Sphere(radius) => drop(new.insert(Sphere { radius })),
             Kind::Mesh(index) => drop(new.insert(MeshInstance { mesh: meshes[index] })),
             Kind::Volume(index) => drop(new.insert(VoxelVolume { volume: volumes[index] })),
+            Kind::Point(light) => drop(new.insert(light)),
+            Kind::Spot(light) => drop(new.insert(light)),
+            Kind::Distant(light) => drop(new.insert(light)),
             Kind::Camera(camera) => {
                 new.insert(camera);
                 if !has_camera && !entity.deleted {
@@ -249,6 +129,12 @@ fn build(folder: &Path, entities: &[AnyEntity], environment: Environment, settin
         }
         if let Some(material) = entity.material {
             new.insert(material);
+        }
+        if let Some(textures) = entity.textures {
+            new.insert(with_images(textures, &images));
+        }
+        if let Some(crease_angle) = entity.smooth {
+            new.insert(SmoothNormals { crease_angle });
         }
         if let Some(visible) = entity.visible {
             new.insert(Visibility(visible));
@@ -265,12 +151,25 @@ fn build(folder: &Path, entities: &[AnyEntity], environment: Environment, settin
     world
 }
 
-fn insert_assets(folder: &Path, assets: &mut Assets) -> (Vec<AssetId>, Vec<AssetId>) {
+/// A glTF file with one triangle, (0, 0, 0), (1, 0, 0), (0, 1, 0).
+const ONE_TRIANGLE: &str = r#"{"asset": {"version": "2.0"},
+    "buffers": [{"byteLength": 36, "uri": "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]}"#;
+
+/// A Radiance picture of two pixels, not compressed.
+const SKY: &[u8] = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x40\x20\x81\x10\x20\x40\x80";
+
+fn insert_assets(folder: &Path, assets: &mut Assets) -> (Vec<AssetId>, Vec<AssetId>, Vec<AssetId>) {
     let obj = folder.join("two.obj");
     fs::write(&obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\no a\nf 1 2 3\no b\nf 3 2 1\nf 1 2 9\n").unwrap();
     let unused = assets.insert_mesh(MeshAsset::from_source(MeshSource::Cube).unwrap());
+    let gltf = folder.join("one.gltf");
+    fs::write(&gltf, ONE_TRIANGLE).unwrap();
     let meshes = [
-        MeshSource::Quad,
+        MeshSource::ModelPrimitive { path: gltf, mesh: 0, primitive: 0 },
         MeshSource::Terrain { seed: 3, cells: 4, height: 0.1 },
         MeshSource::File(obj.clone()),
         MeshSource::FilePart(obj, 1),
@@ -283,7 +182,11 @@ fn insert_assets(folder: &Path, assets: &mut Assets) -> (Vec<AssetId>, Vec<Asset
         VolumeSource::Island { size: 16, seed: 9 },
     ]
     .map(|source| assets.insert_volume(VolumeAsset::from_source(source).unwrap()));
-    (meshes.to_vec(), volumes.to_vec())
+    let sky = folder.join("sky.hdr");
+    fs::write(&sky, SKY).unwrap();
+    let images = [ImageSource::Checker { squares: 2, a: [255, 0, 9], b: [0; 3] }, ImageSource::File(sky)]
+        .map(|source| assets.insert_image(ImageAsset::from_source(source).unwrap()));
+    (meshes.to_vec(), volumes.to_vec(), images.to_vec())
 }
 
 proptest! {
@@ -300,10 +203,12 @@ proptest! {
         environment in any_environment(),
         settings in any_settings(),
         sphere_cloud in any_sphere_cloud(),
+        mesh_structure in any_mesh_structure(),
     ) {
         let folder = tempfile::tempdir().unwrap();
         let mut world = build(folder.path(), &entities, environment, settings);
         world.insert_resource(sphere_cloud);
+        world.insert_resource(mesh_structure);
         let first = folder.path().join("first.ron");
         save(&world, &first).unwrap();
         let loaded = load_new(&first);
@@ -328,6 +233,31 @@ fn the_hash_notices_a_single_bit() {
     };
     assert_eq!(world_with(1.0), world_with(1.0));
     assert_ne!(world_with(1.0), world_with(1.0 + f64::EPSILON));
+}
+
+#[test]
+fn the_mesh_structure_is_saved_and_hashed_only_where_it_is_not_the_default() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("structure.ron");
+    let saved = |structure: MeshStructure| {
+        let mut world = empty_world();
+        world.insert_resource(structure);
+        save(&world, &path).unwrap();
+        fs::read_to_string(&path).unwrap()
+    };
+    assert!(!saved(MeshStructure::default()).contains("mesh_structure"));
+    let given = MeshStructure { accel: MeshAccel::BvhEscape, bins: Some(4), ..MeshStructure::default() };
+    assert!(saved(given).contains("mesh_structure: ("));
+    assert_eq!(*load_new(&path).resource::<MeshStructure>(), given);
+    fs::write(&path, "(version: 1, mesh_structure: (quality: Best, split: LargestAxis, leaf_size: 2))")
+        .unwrap();
+    let expected = MeshStructure {
+        quality: MeshQuality::Best,
+        split: MeshSplit::LargestAxis,
+        leaf_size: 2,
+        ..MeshStructure::default()
+    };
+    assert_eq!(*load_new(&path).resource::<MeshStructure>(), expected);
 }
 
 #[test]

@@ -70,12 +70,89 @@ const ENTITY_MISTAKES: &[(&str, &str, &str)] = &[
     ("camera.vertical_fov_degrees", "camera: (vertical_fov_degrees: NaN)", "between 0 and 180"),
     ("camera.vertical_fov", "camera: (vertical_fov: 3.2)", "between 0 and π"),
     (
-        "camera.vertical_fov and vertical_fov_degrees",
+        "camera.vertical_fov, vertical_fov_degrees and orthographic_height",
         "camera: (vertical_fov: 1, vertical_fov_degrees: 50)",
         "exclude one another",
     ),
     ("camera.lens_radius", "camera: (lens_radius: -0.1)", "not negative"),
     ("camera.focus_distance", "camera: (focus_distance: 0)", "must be positive"),
+    ("camera.orthographic_height", "camera: (orthographic_height: 0)", "must be positive"),
+    (
+        "camera.vertical_fov, vertical_fov_degrees and orthographic_height",
+        "camera: (vertical_fov: 1, orthographic_height: 2)",
+        "exclude one another",
+    ),
+    (
+        "material.surface.smoothness",
+        "material: (surface: SemiSpecular(albedo: (1, 1, 1), smoothness: 2))",
+        "in 0.0 to 1.0",
+    ),
+    ("material.surface.base_color", "material: (surface: Principled((base_color: (2, 0, 0))))", "in 0 to 1"),
+    ("material.surface.metallic", "material: (surface: Principled((metallic: -1)))", "in 0.0 to 1.0"),
+    ("material.surface.roughness", "material: (surface: Principled((roughness: NaN)))", "in 0.0 to 1.0"),
+    ("material.surface.ior", "material: (surface: Principled((ior: 0.5)))", "at least 1"),
+    ("material.surface.specular", "material: (surface: Principled((specular: 1.5)))", "in 0.0 to 1.0"),
+    (
+        "material.surface.specular_color",
+        "material: (surface: Principled((specular_color: (0, 0, 2))))",
+        "in 0 to 1",
+    ),
+    (
+        "material.surface.transmission",
+        "material: (surface: Principled((transmission: inf)))",
+        "in 0.0 to 1.0",
+    ),
+    ("material.surface.clearcoat", "material: (surface: Principled((clearcoat: 2)))", "in 0.0 to 1.0"),
+    (
+        "material.surface.clearcoat_roughness",
+        "material: (surface: Principled((clearcoat_roughness: 2)))",
+        "in 0.0",
+    ),
+    (
+        "material.surface.volume.attenuation_color",
+        "material: (surface: Principled((volume: (attenuation_color: (0, 1, 1), attenuation_distance: 1))))",
+        "above 0 and at most 1",
+    ),
+    (
+        "material.surface.volume.attenuation_distance",
+        "material: (surface: Principled((volume: (attenuation_color: (1, 1, 1), attenuation_distance: 0))))",
+        "positive",
+    ),
+    ("material.surface.color", "material: (surface: Unlit(color: (-1, 0, 0)))", "not negative"),
+    (
+        "material.opacity.alpha",
+        "material: (surface: Unlit(color: (0, 0, 0)), opacity: Blend(alpha: 2))",
+        "in 0.0 to 1.0",
+    ),
+    (
+        "material.opacity.cutoff",
+        "material: (surface: Unlit(color: (0, 0, 0)), opacity: Mask(alpha: 1, cutoff: -1))",
+        "in 0.0 to 1.0",
+    ),
+    ("smooth_normals", "smooth_normals: 4", "in 0.0 to 3.14"),
+    ("point_light.intensity", "point_light: (intensity: (0, -1, 0))", "not negative"),
+    (
+        "spot_light.outer_angle",
+        "spot_light: (intensity: (1, 1, 1), inner_angle: 0, outer_angle: 1.6)",
+        "at most π/2",
+    ),
+    (
+        "spot_light.inner_angle",
+        "spot_light: (intensity: (1, 1, 1), inner_angle: 1, outer_angle: 1)",
+        "below the outer angle",
+    ),
+    ("distant_light.irradiance", "distant_light: (irradiance: (NaN, 1, 1))", "finite"),
+    (
+        "distant_light.angular_diameter",
+        "distant_light: (irradiance: (1, 1, 1), angular_diameter: 3.2)",
+        "below π",
+    ),
+    ("textures.color.uv_set", "textures: (color: (image: 1, uv_set: 2))", "in 0 to 1"),
+    ("textures.normal.normal_scale", "textures: (normal: (image: 1, normal_scale: inf))", "finite"),
+    ("textures.emission.offset", "textures: (emission: (image: 1, offset: (NaN, 0)))", "finite"),
+    ("textures.specular.scale", "textures: (specular: (image: 1, scale: (inf, 0)))", "finite"),
+    ("textures.clearcoat.rotation", "textures: (clearcoat: (image: 1, rotation: NaN))", "finite"),
+    ("textures.color.image", "textures: (color: (image: 7))", "names image 7, which does not exist"),
     ("parent", "parent: 9", "names entity 9, which does not exist"),
     ("parent", "parent: 3", "leads back to the entity itself"),
     ("mesh", "mesh: 2", "names mesh 2, which does not exist"),
@@ -99,6 +176,8 @@ const FILE_MISTAKES: &[(&str, &str)] = &[
     ("settings: (height: 16385)", "settings: height must be in 1 to 16384"),
     ("settings: (spp: 0)", "settings: spp must be in 1 to"),
     ("settings: (exposure: NaN)", "settings: exposure must be in -64.0 to 64.0, but is NaN"),
+    ("mesh_structure: (bins: Some(1))", "mesh_structure: bins must be in 2 to 64, but is 1"),
+    ("mesh_structure: (leaf_size: 9)", "mesh_structure: leaf_size must be in 1 to 8, but is 9"),
     ("sphere_cloud: (max_depth: 21)", "sphere_cloud: max_depth must be in 0 to 20, but is 21"),
     ("sphere_cloud: (min_spheres: 65536)", "sphere_cloud: min_spheres must be in 0 to 65535, but is 65536"),
     ("meshes: {0: Quad}", "mesh 0: id must be in 1 to"),
@@ -121,6 +200,20 @@ const FILE_MISTAKES: &[(&str, &str)] = &[
     ("volumes: {1: Island(size: 8, seed: 1)}", "volume 1: size must be in 16 to 512"),
     ("volumes: {1: File(\"none.vox\")}", "bad.ron: volume 1: none.vox: cannot be read"),
     ("meshes: {1: Quad}, volumes: {1: Menger(level: 1)}", "volume 1: id is a mesh's id too"),
+    ("images: {0: Checker(squares: 2, a: (0, 0, 0), b: (1, 1, 1))}", "image 0: id must be in 1 to"),
+    ("images: {1: Checker(squares: 0, a: (0, 0, 0), b: (1, 1, 1))}", "image 1: squares must be in 1 to 256"),
+    ("images: {1: File(\"/a.png\")}", "image 1: path must be relative"),
+    ("images: {1: File(\"none.png\")}", "bad.ron: image 1: none.png: cannot be read"),
+    ("images: {1: File(\"bad.ron\")}", "bad.ron: image 1: bad.ron: is no PNG, JPEG"),
+    ("images: {1: ModelImage(\"bad.ron\", 0)}", "bad.ron: image 1: bad.ron:1:"),
+    ("meshes: {1: ModelPrimitive(path: \"bad.ron\", mesh: 0, primitive: 0)}", "bad.ron: mesh 1: bad.ron:1:"),
+    (
+        "meshes: {1: Quad}, images: {1: Checker(squares: 2, a: (0, 0, 0), b: (1, 1, 1))}",
+        "image 1: id is a mesh's id too",
+    ),
+    ("environment: Map(image: 4)", "environment: image names image 4, which does not exist"),
+    ("environment: Map(image: 4, strength: -1)", "environment: strength must be finite and not negative"),
+    ("environment: Map(image: 4, rotation: NaN)", "environment: rotation must be finite"),
     ("scatter: [(count: 0, seed: 1, min: (0,0,0), max: (1,1,1), radius: (1, 2))]", "scatter 0: count"),
     ("scatter: [(count: 9, seed: 1, min: (0,2,0), max: (1,1,1), radius: (1, 2))]", "scatter 0: max"),
     ("scatter: [(count: 9, seed: 1, min: (0,0,0), max: (1,1,1), radius: (2, 1))]", "scatter 0: radius"),
@@ -251,7 +344,10 @@ fn conveniences_of_hand_written_files_become_plain_components() {
         world.query_filtered::<(&StableId, &Camera, &Transform), bevy_ecs::prelude::With<ActiveCamera>>();
     let (id, camera, transform) = cameras.single(&world).unwrap();
     assert_eq!((id.0, camera.focus_distance), (7, 5.0));
-    assert!((camera.vertical_fov - std::f64::consts::FRAC_PI_3).abs() < 1e-12);
+    let luxel_scene::Projection::Perspective { vertical_fov } = camera.projection else {
+        panic!("a perspective")
+    };
+    assert!((vertical_fov - std::f64::consts::FRAC_PI_3).abs() < 1e-12);
     assert!(transform.affine().transform_vector3(-glam::DVec3::Z).distance(-glam::DVec3::Z) < 1e-12);
     let spheres: Vec<_> = world.query::<(&StableId, &Sphere, &Transform)>().iter(&world).collect();
     assert_eq!(spheres.len(), 5);

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 /// A mesh, how to get it again, and what had to be left out.
@@ -22,9 +22,18 @@ pub struct MeshAsset {
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum MeshSource {
-    /// All triangles of an .obj file. In a scene file the path is relative to the file's folder;
+    /// All triangles of an .obj or .ply file. In a scene file the path is relative to the file's folder;
     /// in a world it is absolute.
     File(PathBuf),
+    /// Primitive `primitive` of mesh `mesh` of a glTF model, both counted from 0.
+    ModelPrimitive {
+        /// A .gltf or .glb file; as for `File`.
+        path: PathBuf,
+        /// Index in the file's `meshes`.
+        mesh: u32,
+        /// Index in the mesh's `primitives`.
+        primitive: u32,
+    },
     /// The n-th (object, material) group of an .obj file, counted from 0 over the groups that have
     /// a triangle.
     FilePart(PathBuf, u32),
@@ -51,6 +60,11 @@ pub enum MeshSource {
         /// Corners of a ring, 3..=256.
         sides: u32,
     },
+    /// A sitting rabbit, 1 high from y = 0, looking along +Z: a closed mesh with thin ears.
+    Rabbit {
+        /// 20 · `frequency`² triangles, 1..=512; 59 has those of the Stanford bunny (69,620).
+        frequency: u32,
+    },
     /// Hills: a height field over [−½, ½]² of XZ.
     Terrain {
         /// Picks the hills.
@@ -66,7 +80,7 @@ pub enum MeshSource {
 ///
 /// Invariants: every index is below `positions.len()`; all positions that a triangle uses are finite, and
 /// those from a file within ±2⁶⁰ on each axis; no triangle has two equal corners; `triangle_ids` is
-/// strictly rising and as long as `triangles`.
+/// strictly rising and as long as `triangles`; attributes are finite, and those that there are as many as positions.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct TriangleMesh {
     /// Corners.
@@ -75,13 +89,21 @@ pub struct TriangleMesh {
     pub triangles: Vec<[u32; 3]>,
     /// Which triangle of the source this is, so that ids outlive dropped neighbours.
     pub triangle_ids: Vec<u32>,
+    /// Unit normal of each position, or empty.
+    pub normals: Vec<Vec3>,
+    /// Unit tangent of each position, and the sign of the bitangent (±1) in w, or empty.
+    pub tangents: Vec<Vec4>,
+    /// Two sets of texture coordinates of each position (v downwards, as in glTF), each possibly empty.
+    pub uvs: [Vec<Vec2>; 2],
+    /// Linear colour and opacity of each position, in [0, 1], or empty.
+    pub colors: Vec<Vec4>,
 }
 
 impl TriangleMesh {
     /// A mesh of all `triangles`, numbered in order.
     pub(crate) fn numbered(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
         let triangle_ids = (0..).take(triangles.len()).collect();
-        Self { positions, triangles, triangle_ids }
+        Self { positions, triangles, triangle_ids, ..Self::default() }
     }
 
     /// Smallest and largest coordinates of the corners that triangles use; `None` if there is no
@@ -110,7 +132,16 @@ pub struct Dropped {
 impl Dropped {
     /// All of them.
     pub fn total(&self) -> u32 {
-        self.bad_index + self.out_of_range + self.zero_area
+        self.bad_index.saturating_add(self.out_of_range).saturating_add(self.zero_area)
+    }
+
+    /// These and those of another mesh.
+    pub fn plus(self, more: Self) -> Self {
+        Self {
+            bad_index: self.bad_index.saturating_add(more.bad_index),
+            out_of_range: self.out_of_range.saturating_add(more.out_of_range),
+            zero_area: self.zero_area.saturating_add(more.zero_area),
+        }
     }
 }
 

@@ -1,8 +1,9 @@
-//! Geometry that entities share: triangle meshes and voxel volumes, each with its origin.
+//! What entities share: triangle meshes, voxel volumes and images, each with its origin.
 //!
 //! An asset never changes: an edited one gets a new id. So an [`AssetId`] is a key that a cache can
 //! trust, and [`Assets`] is cheap to clone.
 
+mod image;
 mod mesh;
 mod volume;
 
@@ -12,25 +13,27 @@ use std::sync::Arc;
 use bevy_ecs::prelude::Resource;
 use serde::{Deserialize, Serialize};
 
+pub use image::{ImageAsset, ImagePixels, ImageSource};
 pub use mesh::{Dropped, MeshAsset, MeshSource, TriangleMesh};
 pub use volume::{VolumeAsset, VolumeSource, Voxel, VoxelGrid};
 
-/// Which asset; meshes and volumes share one sequence. At least 1, saved, never reused.
+/// Which asset; meshes, volumes and images share one sequence. At least 1, saved, never reused.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct AssetId(pub u32);
 
-/// Every mesh and volume of a scene.
+/// Every mesh, volume and image of a scene.
 #[derive(Resource, Clone, PartialEq, Debug)]
 pub struct Assets {
     next: u32,
     meshes: BTreeMap<AssetId, Arc<MeshAsset>>,
     volumes: BTreeMap<AssetId, Arc<VolumeAsset>>,
+    images: BTreeMap<AssetId, Arc<ImageAsset>>,
 }
 
 impl Default for Assets {
     fn default() -> Self {
-        Self { next: 1, meshes: BTreeMap::new(), volumes: BTreeMap::new() }
+        Self { next: 1, meshes: BTreeMap::new(), volumes: BTreeMap::new(), images: BTreeMap::new() }
     }
 }
 
@@ -47,6 +50,23 @@ impl Assets {
         let id = self.next_id();
         self.volumes.insert(id, Arc::new(volume));
         id
+    }
+
+    /// Adds an image under a new id.
+    pub fn insert_image(&mut self, image: ImageAsset) -> AssetId {
+        let id = self.next_id();
+        self.images.insert(id, Arc::new(image));
+        id
+    }
+
+    /// The image with this id.
+    pub fn image(&self, id: AssetId) -> Option<&Arc<ImageAsset>> {
+        self.images.get(&id)
+    }
+
+    /// All images by rising id.
+    pub fn images(&self) -> impl ExactSizeIterator<Item = (AssetId, &Arc<ImageAsset>)> {
+        self.images.iter().map(|(&id, image)| (id, image))
     }
 
     /// The mesh with this id.
@@ -88,9 +108,31 @@ impl Assets {
     pub(crate) fn from_tables(
         meshes: BTreeMap<AssetId, Arc<MeshAsset>>,
         volumes: BTreeMap<AssetId, Arc<VolumeAsset>>,
+        images: BTreeMap<AssetId, Arc<ImageAsset>>,
         next: u32,
     ) -> Self {
-        Self { next, meshes, volumes }
+        Self { next, meshes, volumes, images }
+    }
+
+    /// The meshes and images, each with its id here.
+    pub(crate) fn into_meshes_and_images(
+        self,
+    ) -> (BTreeMap<AssetId, Arc<MeshAsset>>, BTreeMap<AssetId, Arc<ImageAsset>>) {
+        (self.meshes, self.images)
+    }
+
+    /// Adds a mesh of another table under a new id.
+    pub(crate) fn insert_shared_mesh(&mut self, mesh: Arc<MeshAsset>) -> AssetId {
+        let id = self.next_id();
+        self.meshes.insert(id, mesh);
+        id
+    }
+
+    /// Adds an image of another table under a new id.
+    pub(crate) fn insert_shared_image(&mut self, image: Arc<ImageAsset>) -> AssetId {
+        let id = self.next_id();
+        self.images.insert(id, image);
+        id
     }
 
     fn next_id(&mut self) -> AssetId {

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::assets::{Assets, Dropped, MeshAsset, MeshSource, VolumeAsset, VolumeSource};
+use crate::assets::{Assets, Dropped, ImageSource, MeshAsset, MeshSource, VolumeAsset, VolumeSource};
 use crate::error::SceneError;
-use crate::import::{ObjCache, VoxFile, canonical};
+use crate::import::{Models, VoxFile, canonical};
 use crate::procedural;
 use crate::report::LoadReport;
 
@@ -16,19 +16,22 @@ use super::record::SceneFile;
 
 /// Everything that `file`, which lies at `path`, lists; each model file is read once.
 pub(super) fn load_assets(path: &Path, file: &SceneFile) -> Result<(Assets, LoadReport), SceneError> {
-    let mut objs = ObjCache::default();
-    let mut report = LoadReport::default();
+    let mut models = Models::default();
     let mut meshes = BTreeMap::new();
     for (&id, source) in &file.meshes {
         let place = format!("mesh {}", id.0);
         let source = resolve_mesh(path, &place, source)?;
-        let asset = mesh_asset(source, &mut objs).map_err(|error| asset_error(path, &place, error))?;
+        let asset = mesh_asset(source, &mut models).map_err(|error| asset_error(path, &place, error))?;
         meshes.insert(id, Arc::new(asset));
     }
-    for (path, obj) in objs.files() {
-        report.dropped.extend(obj.dropped_line(path));
-        report.warnings.extend(obj.warnings.iter().cloned());
+    let mut images = BTreeMap::new();
+    for (&id, source) in &file.images {
+        let place = format!("image {}", id.0);
+        let source = resolve_image(path, &place, source)?;
+        let asset = models.image(source).map_err(|error| asset_error(path, &place, error))?;
+        images.insert(id, Arc::new(asset));
     }
+    let mut report = models.report;
     let mut volumes = BTreeMap::new();
     for (&id, source) in &file.volumes {
         let place = format!("volume {}", id.0);
@@ -36,29 +39,22 @@ pub(super) fn load_assets(path: &Path, file: &SceneFile) -> Result<(Assets, Load
         let asset = volume_asset(source, &mut report).map_err(|error| asset_error(path, &place, error))?;
         volumes.insert(id, Arc::new(asset));
     }
-    let used = file.meshes.keys().chain(file.volumes.keys()).max();
+    let used = file.meshes.keys().chain(file.volumes.keys()).chain(file.images.keys()).max();
     let next = used.map_or(1, |id| id.0 + 1).max(file.next_asset.unwrap_or(1));
-    Ok((Assets::from_tables(meshes, volumes, next), report))
+    Ok((Assets::from_tables(meshes, volumes, images, next), report))
 }
 
 /// Follows a source whose path is absolute and whose numbers are in range.
-pub(crate) fn mesh_asset(source: MeshSource, objs: &mut ObjCache) -> Result<MeshAsset, SceneError> {
-    let (mesh, dropped) = match &source {
-        MeshSource::FilePart(path, part) => {
-            let file = objs.get(path)?;
-            let count = file.parts.len();
-            let found = file.parts.get(*part as usize).ok_or_else(|| {
-                SceneError::unusable(path, format!("has {count} parts, so there is no part {part}"))
-            })?;
-            (found.mesh.clone(), file.dropped)
+pub(crate) fn mesh_asset(source: MeshSource, models: &mut Models) -> Result<MeshAsset, SceneError> {
+    match &source {
+        MeshSource::File(path) => models.whole(path),
+        MeshSource::FilePart(path, part) => models.part(path, *part),
+        MeshSource::ModelPrimitive { path, mesh, primitive } => models.primitive(path, *mesh, *primitive),
+        recipe => {
+            let mesh = procedural::mesh(recipe).unwrap_or_default();
+            Ok(MeshAsset { source, mesh, dropped: Dropped::default() })
         }
-        MeshSource::File(path) => {
-            let file = objs.get(path)?;
-            (file.whole(), file.dropped)
-        }
-        recipe => (procedural::mesh(recipe).unwrap_or_default(), Dropped::default()),
-    };
-    Ok(MeshAsset { source, mesh, dropped })
+    }
 }
 
 /// Follows a source whose path is absolute and whose numbers are in range.
@@ -84,6 +80,9 @@ fn resolve_mesh(scene: &Path, place: &str, source: &MeshSource) -> Result<MeshSo
     Ok(match source {
         MeshSource::File(path) => MeshSource::File(resolve(path)?),
         MeshSource::FilePart(path, part) => MeshSource::FilePart(resolve(path)?, *part),
+        MeshSource::ModelPrimitive { path, mesh, primitive } => {
+            MeshSource::ModelPrimitive { path: resolve(path)?, mesh: *mesh, primitive: *primitive }
+        }
         recipe => recipe.clone(),
     })
 }
@@ -91,6 +90,16 @@ fn resolve_mesh(scene: &Path, place: &str, source: &MeshSource) -> Result<MeshSo
 fn resolve_volume(scene: &Path, place: &str, source: &VolumeSource) -> Result<VolumeSource, SceneError> {
     Ok(match source {
         VolumeSource::File(path) => VolumeSource::File(resolve(scene, place, path)?),
+        recipe => recipe.clone(),
+    })
+}
+
+fn resolve_image(scene: &Path, place: &str, source: &ImageSource) -> Result<ImageSource, SceneError> {
+    Ok(match source {
+        ImageSource::File(path) => ImageSource::File(resolve(scene, place, path)?),
+        ImageSource::ModelImage(path, number) => {
+            ImageSource::ModelImage(resolve(scene, place, path)?, *number)
+        }
         recipe => recipe.clone(),
     })
 }

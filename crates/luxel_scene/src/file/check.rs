@@ -5,12 +5,13 @@ use std::ops::RangeInclusive;
 
 use glam::{DVec3, Vec3};
 
-use crate::assets::{MeshSource, VolumeSource};
-use crate::material::{Material, Surface};
+use crate::assets::{ImageSource, MeshSource, VolumeSource};
+use crate::mesh_structure::{MAX_MESH_BINS, MAX_MESH_LEAF_SIZE, MeshStructure};
 use crate::procedural::Scatter;
 use crate::resources::{Environment, RenderSettings};
 use crate::sphere_cloud::{MAX_CLOUD_DEPTH, MAX_LEAF_SPHERES, SphereCloud};
 
+use super::looks::{check_lights, check_material, check_smooth_normals, check_textures};
 use super::record::{CameraRecord, EntityRecord, SceneFile, TransformRecord, is_nearly_unit};
 
 /// A field that is wrong, and what it must be.
@@ -29,7 +30,7 @@ pub(super) const MAX_ENTITIES: u64 = 4_000_000;
 /// The largest id that a file may hold: room for new ones is left.
 pub(super) const MAX_ID: u32 = i32::MAX as u32;
 
-fn require(holds: bool, field: &str, rule: &str, value: impl Debug) -> Checked {
+pub(super) fn require(holds: bool, field: &str, rule: &str, value: impl Debug) -> Checked {
     if holds {
         Ok(())
     } else {
@@ -37,25 +38,29 @@ fn require(holds: bool, field: &str, rule: &str, value: impl Debug) -> Checked {
     }
 }
 
-fn positive(field: &str, value: f64) -> Checked {
+pub(super) fn positive(field: &str, value: f64) -> Checked {
     require(value.is_finite() && value > 0.0, field, "positive and finite", value)
 }
 
-fn between<T: PartialOrd + Debug>(field: &str, value: T, range: RangeInclusive<T>) -> Checked {
+pub(super) fn not_negative(field: &str, value: f64) -> Checked {
+    require(value.is_finite() && value >= 0.0, field, "finite and not negative", value)
+}
+
+pub(super) fn between<T: PartialOrd + Debug>(field: &str, value: T, range: RangeInclusive<T>) -> Checked {
     let rule = format!("in {:?} to {:?}", range.start(), range.end());
     require(range.contains(&value), field, &rule, value)
 }
 
-fn finite(field: &str, value: DVec3) -> Checked {
+pub(super) fn finite(field: &str, value: DVec3) -> Checked {
     require(value.is_finite(), field, "finite", value.to_array())
 }
 
-fn reflectance(field: &str, value: Vec3) -> Checked {
+pub(super) fn reflectance(field: &str, value: Vec3) -> Checked {
     let holds = value.to_array().iter().all(|channel| (0.0..=1.0).contains(channel));
     require(holds, field, "in 0 to 1 in each channel", value.to_array())
 }
 
-fn radiance(field: &str, value: Vec3) -> Checked {
+pub(super) fn radiance(field: &str, value: Vec3) -> Checked {
     let holds = value.is_finite() && value.min_element() >= 0.0;
     require(holds, field, "finite and not negative", value.to_array())
 }
@@ -77,6 +82,7 @@ pub(super) fn check_sections(file: &SceneFile) -> Result<(), (String, Flaw)> {
     check_environment(&file.environment).map_err(at("environment"))?;
     check_settings(&file.settings).map_err(at("settings"))?;
     check_sphere_cloud(&file.sphere_cloud).map_err(at("sphere_cloud"))?;
+    check_mesh_structure(&file.mesh_structure).map_err(at("mesh_structure"))?;
     for (id, source) in &file.meshes {
         let place = format!("mesh {}", id.0);
         between("id", id.0, 1..=MAX_ID).map_err(at(&place))?;
@@ -86,6 +92,11 @@ pub(super) fn check_sections(file: &SceneFile) -> Result<(), (String, Flaw)> {
         let place = format!("volume {}", id.0);
         between("id", id.0, 1..=MAX_ID).map_err(at(&place))?;
         check_volume_source(source).map_err(at(&place))?;
+    }
+    for (id, source) in &file.images {
+        let place = format!("image {}", id.0);
+        between("id", id.0, 1..=MAX_ID).map_err(at(&place))?;
+        check_image_source(source).map_err(at(&place))?;
     }
     for (index, scatter) in file.scatter.iter().enumerate() {
         check_scatter(scatter).map_err(at(&format!("scatter {index}")))?;
@@ -106,6 +117,10 @@ fn check_environment(environment: &Environment) -> Checked {
             radiance("horizon", horizon)?;
             radiance("ground", ground)
         }
+        Environment::Map { rotation, strength, .. } => {
+            require(rotation.is_finite(), "rotation", "finite", rotation)?;
+            not_negative("strength", strength.into())
+        }
     }
 }
 
@@ -122,6 +137,11 @@ fn check_sphere_cloud(cloud: &SphereCloud) -> Checked {
     between("min_spheres", cloud.min_spheres, 0..=MAX_LEAF_SPHERES)
 }
 
+fn check_mesh_structure(structure: &MeshStructure) -> Checked {
+    between("bins", structure.bins.unwrap_or(MAX_MESH_BINS), 2..=MAX_MESH_BINS)?;
+    between("leaf_size", structure.leaf_size, 1..=MAX_MESH_LEAF_SIZE)
+}
+
 /// Everything about one entity that can be seen from it alone.
 pub(super) fn check_entity(entity: &EntityRecord) -> Checked {
     check_transform(&entity.transform)?;
@@ -132,9 +152,10 @@ pub(super) fn check_entity(entity: &EntityRecord) -> Checked {
     if let Some(sphere) = &entity.sphere {
         positive("sphere.radius", sphere.radius)?;
     }
-    if let Some(material) = &entity.material {
-        check_material(material)?;
-    }
+    entity.material.as_ref().map_or(Ok(()), check_material)?;
+    entity.textures.as_ref().map_or(Ok(()), check_textures)?;
+    entity.smooth_normals.as_ref().map_or(Ok(()), check_smooth_normals)?;
+    check_lights(entity)?;
     entity.camera.as_ref().map_or(Ok(()), check_camera)
 }
 
@@ -162,26 +183,16 @@ fn check_transform(transform: &TransformRecord) -> Checked {
     Ok(())
 }
 
-fn check_material(material: &Material) -> Checked {
-    radiance("material.emission", material.emission)?;
-    match material.surface {
-        Surface::Lambert { albedo } => reflectance("material.surface.albedo", albedo),
-        Surface::Metal { albedo, fuzz } => {
-            reflectance("material.surface.albedo", albedo)?;
-            between("material.surface.fuzz", fuzz, 0.0..=1.0)
-        }
-        Surface::Dielectric { ior } => {
-            let holds = ior.is_finite() && ior >= 1.0;
-            require(holds, "material.surface.ior", "finite and at least 1", ior)
-        }
-    }
-}
-
 fn check_camera(camera: &CameraRecord) -> Checked {
     at_most_one(
-        "camera.vertical_fov and vertical_fov_degrees",
-        &[camera.vertical_fov.is_some(), camera.vertical_fov_degrees.is_some()],
+        "camera.vertical_fov, vertical_fov_degrees and orthographic_height",
+        &[
+            camera.vertical_fov.is_some(),
+            camera.vertical_fov_degrees.is_some(),
+            camera.orthographic_height.is_some(),
+        ],
     )?;
+    camera.orthographic_height.map_or(Ok(()), |height| positive("camera.orthographic_height", height))?;
     let open = |value: f64, end: f64| value > 0.0 && value < end;
     if let Some(angle) = camera.vertical_fov {
         let holds = open(angle, std::f64::consts::PI);
@@ -191,16 +202,18 @@ fn check_camera(camera: &CameraRecord) -> Checked {
         let holds = open(angle, 180.0);
         require(holds, "camera.vertical_fov_degrees", "between 0 and 180", angle)?;
     }
-    let lens = camera.lens_radius;
-    let holds = lens.is_finite() && lens >= 0.0;
-    require(holds, "camera.lens_radius", "finite and not negative", lens)?;
+    not_negative("camera.lens_radius", camera.lens_radius)?;
     camera.focus_distance.map_or(Ok(()), |distance| positive("camera.focus_distance", distance))
 }
 
 /// The numbers of a mesh recipe.
 pub(crate) fn check_mesh_source(source: &MeshSource) -> Checked {
     match *source {
-        MeshSource::File(_) | MeshSource::FilePart(..) | MeshSource::Quad | MeshSource::Cube => Ok(()),
+        MeshSource::File(_)
+        | MeshSource::ModelPrimitive { .. }
+        | MeshSource::FilePart(..)
+        | MeshSource::Quad
+        | MeshSource::Cube => Ok(()),
         MeshSource::Icosphere { subdivisions } => between("subdivisions", subdivisions, 0..=8),
         MeshSource::TorusKnot { p, q, tube, segments, sides } => {
             between("p", p, 1..=64)?;
@@ -209,6 +222,7 @@ pub(crate) fn check_mesh_source(source: &MeshSource) -> Checked {
             between("segments", segments, 3..=4096)?;
             between("sides", sides, 3..=256)
         }
+        MeshSource::Rabbit { frequency } => between("frequency", frequency, 1..=512),
         MeshSource::Terrain { cells, height, .. } => {
             between("cells", cells, 1..=2048)?;
             positive("height", height.into())
@@ -223,6 +237,14 @@ pub(crate) fn check_volume_source(source: &VolumeSource) -> Checked {
         VolumeSource::Island { size, .. } => between("size", size, 16..=512),
         VolumeSource::Menger { level } => between("level", level, 0..=5),
         VolumeSource::Lantern { size } => between("size", size, 5..=256),
+    }
+}
+
+/// The numbers of an image recipe.
+pub(crate) fn check_image_source(source: &ImageSource) -> Checked {
+    match *source {
+        ImageSource::File(_) | ImageSource::ModelImage(..) => Ok(()),
+        ImageSource::Checker { squares, .. } => between("squares", squares, 1..=256),
     }
 }
 

@@ -3,8 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::ids::StableId;
+use crate::resources::Environment;
 
 use super::check::{Flaw, MAX_ID};
+use super::looks::texture_roles;
 use super::record::{EntityRecord, SceneFile};
 
 /// The deepest hierarchy that is loaded.
@@ -60,13 +62,36 @@ pub(super) fn check_references(file: &SceneFile) -> Result<(), Placed> {
             }
             _ => {}
         }
+        let references = entity.textures.iter().flat_map(texture_roles);
+        for (role, texture) in references.filter_map(|(role, texture)| Some((role, texture?))) {
+            if !file.images.contains_key(&texture.image) {
+                return missing(&format!("textures.{role}.image"), "image", texture.image.0);
+            }
+        }
+    }
+    if let Environment::Map { image, .. } = file.environment
+        && !file.images.contains_key(&image)
+    {
+        let message = format!("names image {}, which does not exist", image.0);
+        return Err(flaw("environment".to_owned(), "image", message));
     }
     check_active_camera(file, &by_id)?;
     check_trees(&by_id)?;
-    match file.meshes.keys().find(|id| file.volumes.contains_key(id)) {
-        Some(id) => Err(flaw(format!("volume {}", id.0), "id", "is a mesh's id too".to_owned())),
-        None => Ok(()),
+    check_asset_ids(file)
+}
+
+/// Meshes, volumes and images share one sequence of ids.
+fn check_asset_ids(file: &SceneFile) -> Result<(), Placed> {
+    for (ids, kind, others, other) in [
+        (file.volumes.keys().collect::<Vec<_>>(), "volume", file.meshes.keys().collect::<Vec<_>>(), "mesh"),
+        (file.images.keys().collect(), "image", file.meshes.keys().collect(), "mesh"),
+        (file.images.keys().collect(), "image", file.volumes.keys().collect(), "volume"),
+    ] {
+        if let Some(id) = ids.into_iter().find(|id| others.binary_search(id).is_ok()) {
+            return Err(flaw(format!("{kind} {}", id.0), "id", format!("is a {other}'s id too")));
+        }
     }
+    Ok(())
 }
 
 fn check_active_camera(file: &SceneFile, by_id: &BTreeMap<StableId, &EntityRecord>) -> Result<(), Placed> {

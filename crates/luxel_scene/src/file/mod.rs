@@ -7,12 +7,15 @@
 mod assets;
 mod check;
 mod graph;
+mod hash;
+mod looks;
 mod read;
 mod record;
 mod world;
 mod write;
 
 pub(crate) use assets::{mesh_asset, volume_asset};
-pub(crate) use check::{Checked, check_mesh_source, check_volume_source};
+pub(crate) use check::{Checked, check_image_source, check_mesh_source, check_volume_source};
+pub(crate) use hash::world_hash;
 pub(crate) use read::load_scene;
-pub(crate) use write::{save_scene, world_hash};
+pub(crate) use write::save_scene;

@@ -5,13 +5,16 @@ use std::collections::BTreeMap;
 use glam::{DQuat, DVec3, EulerRot};
 use serde::{Deserialize, Serialize};
 
-use crate::assets::{AssetId, MeshSource, VolumeSource};
-use crate::components::{Camera, Name, Sphere, Transform};
+use crate::assets::{AssetId, ImageSource, MeshSource, VolumeSource};
+use crate::components::{Camera, Name, Projection, SmoothNormals, Sphere, Transform};
 use crate::ids::StableId;
+use crate::lights::{DistantLight, PointLight, SpotLight};
 use crate::material::Material;
+use crate::mesh_structure::MeshStructure;
 use crate::procedural::Scatter;
 use crate::resources::{Environment, RenderSettings};
 use crate::sphere_cloud::SphereCloud;
+use crate::textures::MaterialTextures;
 
 /// The version that is written. A section that a file of this version lacks is at its default, and one at its
 /// default is not written where `skip_serializing_if` says so: sections that came later than version 1 did not
@@ -36,6 +39,9 @@ pub(super) struct SceneFile {
     /// The structure over the spheres.
     #[serde(default, skip_serializing_if = "SphereCloud::is_default")]
     pub(super) sphere_cloud: SphereCloud,
+    /// The structure over the triangles of each mesh.
+    #[serde(default, skip_serializing_if = "MeshStructure::is_default")]
+    pub(super) mesh_structure: MeshStructure,
     /// The camera entity; without it the first one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) active_camera: Option<StableId>,
@@ -43,6 +49,8 @@ pub(super) struct SceneFile {
     pub(super) meshes: BTreeMap<AssetId, MeshSource>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) volumes: BTreeMap<AssetId, VolumeSource>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) images: BTreeMap<AssetId, ImageSource>,
     /// Recipes for many spheres; entities like any other once loaded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) scatter: Vec<Scatter>,
@@ -70,6 +78,17 @@ pub(super) struct EntityRecord {
     pub(super) voxels: Option<AssetId>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) material: Option<Material>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) textures: Option<MaterialTextures>,
+    /// In place of the normals of the mesh's file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) smooth_normals: Option<SmoothNormals>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) point_light: Option<PointLight>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) spot_light: Option<SpotLight>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) distant_light: Option<DistantLight>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) camera: Option<CameraRecord>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -175,6 +194,9 @@ pub(super) struct CameraRecord {
     pub(super) vertical_fov: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) vertical_fov_degrees: Option<f64>,
+    /// Metres; instead of an angle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) orthographic_height: Option<f64>,
     pub(super) lens_radius: f64,
     /// Without it, the point that the transform looks at is sharp, or else what is 1 m away.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -184,8 +206,15 @@ pub(super) struct CameraRecord {
 impl CameraRecord {
     pub(super) fn of(camera: &Camera) -> Self {
         Self {
-            vertical_fov: Some(camera.vertical_fov),
+            vertical_fov: match camera.projection {
+                Projection::Perspective { vertical_fov } => Some(vertical_fov),
+                Projection::Orthographic { .. } => None,
+            },
             vertical_fov_degrees: None,
+            orthographic_height: match camera.projection {
+                Projection::Perspective { .. } => None,
+                Projection::Orthographic { height } => Some(height),
+            },
             lens_radius: camera.lens_radius,
             focus_distance: Some(camera.focus_distance),
         }
@@ -195,15 +224,19 @@ impl CameraRecord {
         let default = Camera::default();
         let to_target = |target: DVec3| transform.translation.distance(target);
         Camera {
-            vertical_fov: self
-                .vertical_fov
-                .or(self.vertical_fov_degrees.map(f64::to_radians))
-                .unwrap_or(default.vertical_fov),
+            projection: self.projection(default.projection),
             lens_radius: self.lens_radius,
             focus_distance: self
                 .focus_distance
                 .or(transform.look_at.map(to_target))
                 .unwrap_or(default.focus_distance),
         }
+    }
+
+    fn projection(&self, default: Projection) -> Projection {
+        let perspective = |vertical_fov| Projection::Perspective { vertical_fov };
+        let angle = self.vertical_fov.or(self.vertical_fov_degrees.map(f64::to_radians));
+        let parallel = self.orthographic_height.map(|height| Projection::Orthographic { height });
+        parallel.or(angle.map(perspective)).unwrap_or(default)
     }
 }

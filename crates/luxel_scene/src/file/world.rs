@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 
 use bevy_ecs::hierarchy::ChildOf;
-use bevy_ecs::prelude::{Entity, EntityRef, With, World};
+use bevy_ecs::prelude::{Entity, EntityRef, EntityWorldMut, With, World};
 
 use crate::assets::Assets;
 use crate::components::{
-    ActiveCamera, Camera, MeshInstance, Name, Sphere, Transform, Visibility, VoxelVolume,
+    ActiveCamera, Camera, MeshInstance, Name, SmoothNormals, Sphere, Transform, Visibility, VoxelVolume,
 };
 use crate::ids::{StableId, StableIds};
+use crate::lights::{DistantLight, PointLight, SpotLight};
 use crate::material::Material;
+use crate::textures::MaterialTextures;
 
 use super::record::{CameraRecord, EntityRecord, SceneFile, TransformRecord, VERSION};
 
@@ -44,15 +46,13 @@ pub(super) fn fill(world: &mut World, file: &SceneFile, next_id: u32, assets: As
     world.insert_resource(file.environment);
     world.insert_resource(file.settings);
     world.insert_resource(file.sphere_cloud);
+    world.insert_resource(file.mesh_structure);
 }
 
 fn spawn_record(world: &mut World, id: StableId, record: &EntityRecord) -> Entity {
     let mut entity = world.spawn((id, record.transform.transform()));
     if let Some(name) = &record.name {
         entity.insert(name.clone());
-    }
-    if let Some(material) = record.material {
-        entity.insert(material);
     }
     if let Some(sphere) = record.sphere {
         entity.insert(sphere);
@@ -66,10 +66,36 @@ fn spawn_record(world: &mut World, id: StableId, record: &EntityRecord) -> Entit
     if let Some(camera) = &record.camera {
         entity.insert(camera.camera(&record.transform));
     }
+    insert_looks(&mut entity, record);
+    insert_lights(&mut entity, record);
     if let Some(visible) = record.visible {
         entity.insert(Visibility(visible));
     }
     entity.id()
+}
+
+fn insert_looks(entity: &mut EntityWorldMut, record: &EntityRecord) {
+    if let Some(material) = record.material {
+        entity.insert(material);
+    }
+    if let Some(textures) = record.textures {
+        entity.insert(textures);
+    }
+    if let Some(normals) = record.smooth_normals {
+        entity.insert(normals);
+    }
+}
+
+fn insert_lights(entity: &mut EntityWorldMut, record: &EntityRecord) {
+    if let Some(light) = record.point_light {
+        entity.insert(light);
+    }
+    if let Some(light) = record.spot_light {
+        entity.insert(light);
+    }
+    if let Some(light) = record.distant_light {
+        entity.insert(light);
+    }
 }
 
 /// The file that describes `world`: entities with a [`StableId`] by rising id, and the resources.
@@ -90,6 +116,7 @@ pub(super) fn describe(world: &World) -> SceneFile {
     let assets = world.get_resource::<Assets>().cloned().unwrap_or_default();
     let meshes = assets.meshes().map(|(id, mesh)| (id, mesh.source.clone()));
     let volumes = assets.volumes().map(|(id, volume)| (id, volume.source.clone()));
+    let images = assets.images().map(|(id, image)| (id, image.source.clone()));
     SceneFile {
         version: VERSION,
         next_id: world.get_resource::<StableIds>().map(StableIds::peek),
@@ -97,9 +124,11 @@ pub(super) fn describe(world: &World) -> SceneFile {
         environment: world.get_resource().copied().unwrap_or_default(),
         settings: world.get_resource().copied().unwrap_or_default(),
         sphere_cloud: world.get_resource().copied().unwrap_or_default(),
+        mesh_structure: world.get_resource().copied().unwrap_or_default(),
         active_camera,
         meshes: meshes.collect(),
         volumes: volumes.collect(),
+        images: images.collect(),
         scatter: Vec::new(),
         entities,
     }
@@ -116,6 +145,11 @@ fn describe_entity(world: &World, entity: EntityRef) -> EntityRecord {
         mesh: entity.get::<MeshInstance>().map(|instance| instance.mesh),
         voxels: entity.get::<VoxelVolume>().map(|instance| instance.volume),
         material: entity.get::<Material>().copied(),
+        textures: entity.get::<MaterialTextures>().copied(),
+        smooth_normals: entity.get::<SmoothNormals>().copied(),
+        point_light: entity.get::<PointLight>().copied(),
+        spot_light: entity.get::<SpotLight>().copied(),
+        distant_light: entity.get::<DistantLight>().copied(),
         camera: entity.get::<Camera>().map(CameraRecord::of),
         visible: entity.get::<Visibility>().map(|visibility| visibility.0),
     }

@@ -7,9 +7,8 @@ use std::path::{Component, Path, PathBuf};
 use bevy_ecs::prelude::World;
 use ron::ser::PrettyConfig;
 use tempfile::NamedTempFile;
-use xxhash_rust::xxh3::Xxh3;
 
-use crate::assets::{Assets, MeshSource, TriangleMesh, VolumeSource, VoxelGrid};
+use crate::assets::{ImageSource, MeshSource, VolumeSource};
 use crate::error::SceneError;
 
 use super::check::Flaw;
@@ -33,47 +32,7 @@ pub(crate) fn save_scene(world: &World, path: &Path) -> Result<(), SceneError> {
     write_atomically(&folder, path, text.as_bytes()).map_err(write_error)
 }
 
-/// A fingerprint of what `world` shows: everything that would be saved, and the triangles and voxels
-/// themselves instead of the places that they came from.
-pub(crate) fn world_hash(world: &World) -> Result<u64, SceneError> {
-    let mut file = describe(world);
-    file.meshes.clear();
-    file.volumes.clear();
-    let mut hash = Xxh3::new();
-    hash.update(to_ron(Path::new("world"), &file)?.as_bytes());
-    if let Some(assets) = world.get_resource::<Assets>() {
-        for (id, asset) in assets.meshes() {
-            hash.update(&id.0.to_le_bytes());
-            hash_mesh(&mut hash, &asset.mesh);
-        }
-        for (id, asset) in assets.volumes() {
-            hash.update(&id.0.to_le_bytes());
-            hash_grid(&mut hash, &asset.grid);
-        }
-    }
-    Ok(hash.digest())
-}
-
-fn hash_mesh(hash: &mut Xxh3, mesh: &TriangleMesh) {
-    for coordinate in mesh.positions.iter().flat_map(|position| position.to_array()) {
-        hash.update(&coordinate.to_le_bytes());
-    }
-    for index in mesh.triangles.as_flattened().iter().chain(&mesh.triangle_ids) {
-        hash.update(&index.to_le_bytes());
-    }
-}
-
-fn hash_grid(hash: &mut Xxh3, grid: &VoxelGrid) {
-    hash.update(format!("{:?} {:?}", grid.size, grid.palette).as_bytes());
-    for voxel in &grid.voxels {
-        for coordinate in voxel.cell {
-            hash.update(&coordinate.to_le_bytes());
-        }
-        hash.update(&[voxel.palette]);
-    }
-}
-
-fn to_ron(path: &Path, file: &SceneFile) -> Result<String, SceneError> {
+pub(super) fn to_ron(path: &Path, file: &SceneFile) -> Result<String, SceneError> {
     let pretty = PrettyConfig::new().depth_limit(3).compact_arrays(true).new_line("\n");
     let text = options().to_string_pretty(file, pretty);
     text.map(|text| text + "\n")
@@ -117,13 +76,21 @@ fn make_paths_relative(path: &Path, folder: &Path, file: &mut SceneFile) -> Resu
         }
     };
     for (id, source) in &mut file.meshes {
-        if let MeshSource::File(asset) | MeshSource::FilePart(asset, _) = source {
+        if let MeshSource::File(asset)
+        | MeshSource::FilePart(asset, _)
+        | MeshSource::ModelPrimitive { path: asset, .. } = source
+        {
             fix(format!("mesh {}", id.0), asset)?;
         }
     }
     for (id, source) in &mut file.volumes {
         if let VolumeSource::File(asset) = source {
             fix(format!("volume {}", id.0), asset)?;
+        }
+    }
+    for (id, source) in &mut file.images {
+        if let ImageSource::File(asset) | ImageSource::ModelImage(asset, _) = source {
+            fix(format!("image {}", id.0), asset)?;
         }
     }
     Ok(())

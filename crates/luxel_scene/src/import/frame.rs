@@ -9,14 +9,17 @@ use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::World;
 use glam::{DVec3, Vec3};
 
-use crate::assets::{Assets, MeshAsset, MeshSource, VolumeAsset, VolumeSource};
+use crate::assets::{Assets, MeshAsset, MeshSource, TriangleMesh, VolumeAsset, VolumeSource};
 use crate::components::{ActiveCamera, Camera, MeshInstance, Name, Sphere, Transform, VoxelVolume};
 use crate::error::SceneError;
 use crate::ids::spawn;
 use crate::material::Material;
+use crate::options::LoadOptions;
 use crate::report::LoadReport;
 use crate::resources::{Environment, RenderSettings};
 
+use super::obj_images::ObjImages;
+use super::ply::PlyFile;
 use super::{ObjFile, VoxFile, canonical};
 
 /// The largest model that the stage is set for, half its diagonal; the inverse is the smallest. Ground
@@ -26,12 +29,42 @@ const LARGEST_RADIUS: f64 = (1u64 << 30) as f64;
 
 /// The box that a model fills, Y up.
 #[derive(Clone, Copy, Debug)]
-struct Bounds {
-    min: DVec3,
-    max: DVec3,
+pub(super) struct Bounds {
+    pub(super) min: DVec3,
+    pub(super) max: DVec3,
+}
+
+/// What a model is given because it has none of its own.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stage {
+    pub(super) ground: bool,
+    pub(super) sky: bool,
+    pub(super) lamp: bool,
+    pub(super) camera: bool,
+}
+
+impl Stage {
+    /// For a model that has nothing but its surface.
+    fn whole(options: &LoadOptions) -> Self {
+        let sky = options.environment.is_none();
+        Self { ground: true, sky, lamp: sky, camera: true }
+    }
 }
 
 impl Bounds {
+    /// Of a model that has no extent.
+    pub(super) const UNIT: Self = Self { min: DVec3::splat(-0.5), max: DVec3::splat(0.5) };
+
+    /// Of a mesh with a triangle.
+    pub(super) fn of(mesh: &TriangleMesh) -> Option<Self> {
+        mesh.bounds().map(|(min, max)| Self { min: min.as_dvec3(), max: max.as_dvec3() })
+    }
+
+    /// Around both.
+    pub(super) fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
     fn centre(self) -> DVec3 {
         (self.min + self.max) * 0.5
     }
@@ -42,7 +75,7 @@ impl Bounds {
     }
 
     /// Refuses the model at `path` if no picture of its stage could be right.
-    fn check(self, path: &Path) -> Result<(), SceneError> {
+    pub(super) fn check(self, path: &Path) -> Result<(), SceneError> {
         let flaw = match self.radius() {
             radius if radius > LARGEST_RADIUS => "large",
             radius if radius < 1.0 / LARGEST_RADIUS => "small",
@@ -56,7 +89,7 @@ impl Bounds {
         Err(SceneError::unusable(path, message))
     }
 
-    fn corners(self) -> impl Iterator<Item = DVec3> {
+    pub(super) fn corners(self) -> impl Iterator<Item = DVec3> {
         (0..8u8).map(move |corner| {
             let pick = |bit: u8| f64::from(corner >> bit & 1);
             self.min + (self.max - self.min) * DVec3::new(pick(0), pick(1), pick(2))
@@ -66,72 +99,127 @@ impl Bounds {
 
 /// Fills `world` with an .obj model on a ground: a root entity, and below it one entity for every
 /// (object, material).
-pub(crate) fn load_obj_scene(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
+pub(crate) fn load_obj_scene(
+    path: &Path,
+    world: &mut World,
+    options: &LoadOptions,
+) -> Result<LoadReport, SceneError> {
     let typed = path;
     let path = &canonical(typed)?;
     let file = ObjFile::read(path).map_err(|error| error.renamed(typed))?;
     let bounds = file
         .parts
         .iter()
-        .filter_map(|part| part.mesh.bounds())
-        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-        .map(|(min, max)| Bounds { min: min.as_dvec3(), max: max.as_dvec3() })
+        .filter_map(|part| Bounds::of(&part.mesh))
+        .reduce(Bounds::union)
         .ok_or_else(|| SceneError::unusable(typed, "has no triangle"))?;
     bounds.check(typed)?;
-    let dropped = file.dropped_line(path).into_iter().collect();
+    let mut report = LoadReport {
+        dropped: file.dropped_line(path).into_iter().collect(),
+        warnings: file.warnings,
+        ..LoadReport::default()
+    };
+    let mut images = ObjImages::new(path);
     let root = spawn(world, (model_name(path), Transform::default()));
     for (index, part) in (0..).zip(file.parts) {
-        let mesh = world.get_resource_or_init::<Assets>().insert_mesh(MeshAsset {
+        let mut assets = world.get_resource_or_init::<Assets>();
+        let textures = images.textures(&part.look.maps, &mut assets);
+        let mesh = assets.insert_mesh(MeshAsset {
             source: MeshSource::FilePart(path.clone(), index),
             mesh: part.mesh,
             dropped: file.dropped,
         });
-        let shape = (Name(part.name), MeshInstance { mesh }, part.material);
-        spawn(world, (shape, ChildOf(root)));
+        let shape = (Name(part.name), MeshInstance { mesh }, part.look.material);
+        let entity = spawn(world, (shape, ChildOf(root)));
+        if let Some(textures) = textures {
+            world.entity_mut(entity).insert(textures);
+        }
     }
-    set_the_stage(world, bounds);
-    Ok(LoadReport { dropped, warnings: file.warnings })
+    images.tell(&mut report);
+    set_the_stage(world, bounds, Stage::whole(options));
+    Ok(report)
+}
+
+/// Fills `world` with a .ply model on a ground.
+pub(crate) fn load_ply_scene(
+    path: &Path,
+    world: &mut World,
+    options: &LoadOptions,
+) -> Result<LoadReport, SceneError> {
+    let typed = path;
+    let path = &canonical(typed)?;
+    let file = PlyFile::read(path).map_err(|error| error.renamed(typed))?;
+    let bounds = Bounds::of(&file.mesh).ok_or_else(|| SceneError::unusable(typed, "has no triangle"))?;
+    bounds.check(typed)?;
+    let report = file.report(path);
+    // Colours of corners are factors on the surface's.
+    let material =
+        if file.mesh.colors.is_empty() { Material::default() } else { Material::lambert(Vec3::ONE) };
+    let mesh = world.get_resource_or_init::<Assets>().insert_mesh(file.into_asset(path));
+    spawn(world, (model_name(path), MeshInstance { mesh }, material));
+    set_the_stage(world, bounds, Stage::whole(options));
+    Ok(report)
 }
 
 /// Fills `world` with a .vox model on a ground.
-pub(crate) fn load_vox_scene(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
+pub(crate) fn load_vox_scene(
+    path: &Path,
+    world: &mut World,
+    options: &LoadOptions,
+) -> Result<LoadReport, SceneError> {
     let typed = path;
     let path = &canonical(typed)?;
     let file = VoxFile::read(path).map_err(|error| error.renamed(typed))?;
     let bounds = Bounds { min: DVec3::ZERO, max: file.grid.size.as_dvec3() };
-    let report =
-        LoadReport { dropped: file.dropped_line(path).into_iter().collect(), warnings: file.warnings };
+    let report = LoadReport {
+        dropped: file.dropped_line(path).into_iter().collect(),
+        warnings: file.warnings,
+        ..LoadReport::default()
+    };
     let volume = world
         .get_resource_or_init::<Assets>()
         .insert_volume(VolumeAsset { source: VolumeSource::File(path.clone()), grid: file.grid });
     spawn(world, (model_name(path), VoxelVolume { volume }));
-    set_the_stage(world, bounds);
+    set_the_stage(world, bounds, Stage::whole(options));
     Ok(report)
 }
 
-fn model_name(path: &Path) -> Name {
+pub(super) fn model_name(path: &Path) -> Name {
     Name(path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
 }
 
-fn set_the_stage(world: &mut World, bounds: Bounds) {
+/// Adds what the model lacks.
+pub(super) fn set_the_stage(world: &mut World, bounds: Bounds, stage: Stage) {
+    if stage.ground {
+        spawn_ground(world, bounds);
+    }
+    if stage.lamp {
+        spawn_lamp(world, bounds);
+    }
+    if stage.sky {
+        world.insert_resource(Environment::Gradient {
+            zenith: Vec3::new(0.22, 0.30, 0.46),
+            horizon: Vec3::new(0.56, 0.60, 0.68),
+            ground: Vec3::new(0.20, 0.19, 0.18),
+        });
+    }
+    if stage.camera {
+        let settings = *world.get_resource_or_init::<RenderSettings>();
+        let aspect = f64::from(settings.width) / f64::from(settings.height);
+        spawn_camera(world, bounds, aspect);
+    }
+}
+
+fn spawn_lamp(world: &mut World, bounds: Bounds) {
     let radius = bounds.radius();
-    spawn_ground(world, bounds);
-    let lamp_direction = DVec3::new(-0.55, 1.0, 0.6).normalize();
+    let direction = DVec3::new(-0.55, 1.0, 0.6).normalize();
     let lamp = (
         Name("lamp".to_owned()),
-        Transform::at(bounds.centre() + lamp_direction * 4.0 * radius),
+        Transform::at(bounds.centre() + direction * 4.0 * radius),
         Sphere { radius: 1.7 * radius },
         Material::lamp(Vec3::new(1.0, 0.92, 0.80) * 4.2),
     );
     spawn(world, lamp);
-    world.insert_resource(Environment::Gradient {
-        zenith: Vec3::new(0.22, 0.30, 0.46),
-        horizon: Vec3::new(0.56, 0.60, 0.68),
-        ground: Vec3::new(0.20, 0.19, 0.18),
-    });
-    let settings = *world.get_resource_or_init::<RenderSettings>();
-    let aspect = f64::from(settings.width) / f64::from(settings.height);
-    spawn_camera(world, bounds, aspect);
 }
 
 /// A large grey square, a little below the model so that no two surfaces coincide.
@@ -162,7 +250,7 @@ fn spawn_camera(world: &mut World, bounds: Bounds, aspect: f64) {
     let camera = (
         Name("camera".to_owned()),
         Transform::looking_at(eye, bounds.centre()),
-        Camera { vertical_fov, lens_radius: 0.0, focus_distance: distance },
+        Camera { focus_distance: distance, ..Camera::pinhole(vertical_fov) },
         ActiveCamera,
     );
     spawn(world, camera);

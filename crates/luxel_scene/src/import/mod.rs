@@ -1,13 +1,26 @@
-//! Models of other programs: .obj through `tobj`, .vox through `dot_vox`.
+//! Models of other programs: glTF through `gltf`, .obj through `tobj`, .ply through `ply-rs-bw`, .vox through
+//! `dot_vox`, and images through `image`.
 //!
 //! Files come from anywhere, so nothing in them is believed (robustness.md D2): lengths are checked
 //! before anything is allocated, walks are iterative and limited, bad elements are left out and
 //! counted, and what cannot be understood is an error that names the place.
 
+mod assemble;
+mod cache;
+mod confined;
 mod frame;
+mod gltf;
+mod guard;
+mod image;
 mod mtl;
+mod mtl_look;
 mod obj;
+mod obj_images;
+mod obj_mesh;
 mod obj_text;
+mod ply;
+mod ply_elements;
+mod srgb;
 mod vox;
 mod vox_chunks;
 mod vox_graph;
@@ -18,8 +31,11 @@ use std::path::{Path, PathBuf};
 
 use crate::error::SceneError;
 
-pub(crate) use frame::{load_obj_scene, load_vox_scene};
-pub(crate) use obj::{ObjCache, ObjFile};
+pub(crate) use cache::Models;
+pub(crate) use frame::{load_obj_scene, load_ply_scene, load_vox_scene};
+pub(crate) use gltf::{GltfFile, load_gltf_scene};
+pub(crate) use image::read_image;
+pub(crate) use obj::ObjFile;
 pub(crate) use vox::VoxFile;
 
 /// The longest model file that is read: 1 GiB.
@@ -56,4 +72,18 @@ pub(crate) fn canonical(path: &Path) -> Result<PathBuf, SceneError> {
 /// How a file is called in messages and names: the last part of its path.
 pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}
+
+/// `text` without line breaks, whatever a library or a file put into it.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// `3 meshes`, `1 mesh`.
+fn counted(count: usize, unit: &str) -> String {
+    match (count, unit) {
+        (1, unit) => format!("1 {unit}"),
+        (count, "mesh") => format!("{count} meshes"),
+        (count, unit) => format!("{count} {unit}s"),
+    }
 }

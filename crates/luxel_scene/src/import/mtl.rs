@@ -5,12 +5,10 @@
 //! understood reach it.
 
 use std::collections::HashMap;
-use std::path::{Component, Path};
+use std::path::Path;
 
-use glam::Vec3;
-
-use crate::material::{Material, Surface};
-
+use super::confined::confined;
+use super::mtl_look::{KEYWORDS, MtlLook, look, renamed};
 use super::obj_text::CleanObj;
 use super::{file_name, read_file};
 
@@ -20,7 +18,7 @@ const MAX_MTL_BYTES: u64 = 1 << 24;
 /// Materials by name.
 #[derive(Debug, Default)]
 pub(super) struct Library {
-    materials: Vec<(String, Material)>,
+    materials: Vec<(String, MtlLook)>,
 }
 
 impl Library {
@@ -29,9 +27,9 @@ impl Library {
         self.materials.iter().enumerate().map(|(index, (name, _))| (name.clone(), index)).collect()
     }
 
-    /// The material with this index, or the default one.
-    pub(super) fn material(&self, index: Option<usize>) -> Material {
-        self.find(index).map_or_else(Material::default, |found| found.1)
+    /// The look with this index, or the default one.
+    pub(super) fn look(&self, index: Option<usize>) -> MtlLook {
+        self.find(index).map_or_else(MtlLook::default, |found| found.1.clone())
     }
 
     /// The name of an object in a material.
@@ -39,7 +37,7 @@ impl Library {
         self.find(index).map_or_else(|| object.to_owned(), |(material, _)| format!("{object} ({material})"))
     }
 
-    fn find(&self, index: Option<usize>) -> Option<&(String, Material)> {
+    fn find(&self, index: Option<usize>) -> Option<&(String, MtlLook)> {
         self.materials.get(index?)
     }
 }
@@ -74,15 +72,8 @@ fn read_library(
     obj: &Path,
     name: &str,
     warnings: &mut Vec<String>,
-) -> Result<Vec<(String, Material)>, String> {
-    let relative = name.replace('\\', "/");
-    let inside = Path::new(&relative)
-        .components()
-        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    if !inside || relative.contains(':') {
-        return Err("is outside the model's folder".to_owned());
-    }
-    let path = obj.parent().unwrap_or(Path::new("")).join(relative);
+) -> Result<Vec<(String, MtlLook)>, String> {
+    let path = confined(obj, name)?;
     let bytes = read_file(&path, MAX_MTL_BYTES).map_err(|error| match error {
         crate::SceneError::Read { source, .. } => format!("cannot be read ({source})"),
         other => format!("cannot be used ({other})"),
@@ -90,7 +81,7 @@ fn read_library(
     let text = clean_mtl(&path, &String::from_utf8_lossy(&bytes), warnings);
     let (materials, _) =
         tobj::load_mtl_buf(&mut text.as_bytes()).map_err(|error| format!("is damaged ({error})"))?;
-    Ok(materials.iter().map(|material| (material.name.clone(), surface_of(material))).collect())
+    Ok(materials.iter().map(|material| (material.name.clone(), look(material))).collect())
 }
 
 /// The lines that matter here and are well formed; a warning for each that is not.
@@ -102,7 +93,13 @@ fn clean_mtl(path: &Path, text: &str, warnings: &mut Vec<String>) -> String {
         let numbers_wanted = match words.next() {
             Some("newmtl") if words.next().is_some() => 0,
             Some("Kd" | "Ks" | "Ke") => 3,
-            Some("Ns" | "Ni" | "d" | "illum") => 1,
+            Some("Ns" | "Ni" | "d" | "illum" | "Pr" | "Pm" | "Pc" | "Pcr") => 1,
+            Some(keyword) if KEYWORDS.contains(&keyword) || keyword == "map_d" => {
+                kept.push_str(&renamed(keyword));
+                kept.push_str(&line[keyword.len()..]);
+                kept.push('\n');
+                continue;
+            }
             _ => continue,
         };
         let is_number = |word: &str| word.parse::<f32>().is_ok_and(f32::is_finite);
@@ -122,28 +119,4 @@ fn clean_mtl(path: &Path, text: &str, warnings: &mut Vec<String>) -> String {
         }
     }
     kept
-}
-
-/// The nearest of our materials.
-///
-/// `illum` 4, 6, 7 and 9 are glass (as is anything more transparent than not), 3, 5 and 8 mirrors;
-/// all else is matt. The mirror's fuzz undoes Blender's export, Ns = 1000 (1 − roughness)².
-fn surface_of(material: &tobj::Material) -> Material {
-    let colour = |rgb: Option<[f32; 3]>, or: f32| rgb.map_or(Vec3::splat(or), Vec3::from_array);
-    let albedo = |rgb, or| colour(rgb, or).clamp(Vec3::ZERO, Vec3::ONE);
-    let surface = match material.illumination_model {
-        Some(4 | 6 | 7 | 9) => glass(material),
-        _ if material.dissolve.is_some_and(|opacity| opacity < 0.5) => glass(material),
-        Some(3 | 5 | 8) => Surface::Metal {
-            albedo: albedo(material.specular, 0.9),
-            fuzz: 1.0 - (material.shininess.unwrap_or(1000.0) / 1000.0).clamp(0.0, 1.0).sqrt(),
-        },
-        _ => Surface::Lambert { albedo: albedo(material.diffuse, 0.73) },
-    };
-    Material { surface, emission: colour(material.emissive, 0.0).max(Vec3::ZERO) }
-}
-
-fn glass(material: &tobj::Material) -> Surface {
-    let ior = material.optical_density.filter(|&ior| ior > 1.0).unwrap_or(1.5);
-    Surface::Dielectric { ior }
 }

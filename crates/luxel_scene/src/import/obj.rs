@@ -1,16 +1,14 @@
 //! Wavefront .obj: triangles by (object, material).
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
-
-use glam::Vec3;
+use std::path::Path;
 
 use crate::assets::{Dropped, TriangleMesh};
 use crate::error::SceneError;
-use crate::material::Material;
 
+use super::mtl_look::MtlLook;
 use super::obj_text::{CleanObj, clean};
-use super::{file_name, mtl, read_model};
+use super::{file_name, mtl, obj_mesh, read_model};
 
 /// One object of an .obj file in one material.
 #[derive(Debug)]
@@ -18,7 +16,7 @@ pub(crate) struct ObjPart {
     /// The object's (or group's) name, and the material's if there is one.
     pub(crate) name: String,
     /// From the .mtl file; the default material if there is none.
-    pub(crate) material: Material,
+    pub(crate) look: MtlLook,
     /// At least one triangle.
     pub(crate) mesh: TriangleMesh,
 }
@@ -89,8 +87,9 @@ impl ObjFile {
     pub(crate) fn whole(&self) -> TriangleMesh {
         let mut whole = TriangleMesh::default();
         for part in &self.parts {
-            append(&mut whole, &part.mesh);
+            obj_mesh::append(&mut whole, &part.mesh);
         }
+        obj_mesh::mend(&mut whole);
         let mut numbered: Vec<_> = whole.triangle_ids.into_iter().zip(whole.triangles).collect();
         numbered.sort_unstable();
         (whole.triangle_ids, whole.triangles) = numbered.into_iter().unzip();
@@ -124,31 +123,17 @@ fn group(models: Vec<tobj::Model>, ids: &[u32], library: &mtl::Library) -> Vec<O
         let index = *found.entry((name, material_id)).or_insert_with_key(|(name, _)| {
             parts.push(ObjPart {
                 name: library.part_name(name, material_id),
-                material: library.material(material_id),
+                look: library.look(material_id),
                 mesh: TriangleMesh::default(),
             });
             parts.len() - 1
         });
-        append(&mut parts[index].mesh, &triangles(&mesh, &mut ids));
+        obj_mesh::append(&mut parts[index].mesh, &obj_mesh::triangles(&mesh, &mut ids));
+    }
+    for part in &mut parts {
+        obj_mesh::mend(&mut part.mesh);
     }
     parts
-}
-
-fn triangles(mesh: &tobj::Mesh, ids: &mut impl Iterator<Item = u32>) -> TriangleMesh {
-    let (corners, _) = mesh.indices.as_chunks();
-    let (positions, _) = mesh.positions.as_chunks();
-    TriangleMesh {
-        positions: positions.iter().copied().map(Vec3::from_array).collect(),
-        triangles: corners.to_vec(),
-        triangle_ids: ids.take(corners.len()).collect(),
-    }
-}
-
-fn append(mesh: &mut TriangleMesh, more: &TriangleMesh) {
-    let first = mesh.positions.len() as u32;
-    mesh.positions.extend(&more.positions);
-    mesh.triangles.extend(more.triangles.iter().map(|corners| corners.map(|index| index + first)));
-    mesh.triangle_ids.extend(&more.triangle_ids);
 }
 
 fn nothing_left(path: &Path, clean: &CleanObj) -> SceneError {
@@ -157,23 +142,4 @@ fn nothing_left(path: &Path, clean: &CleanObj) -> SceneError {
         n => format!("none of its {n} triangles can be used ({})", clean.dropped),
     };
     SceneError::unusable(path, message)
-}
-
-/// Every .obj file is read once per scene, however many meshes come from it.
-#[derive(Debug, Default)]
-pub(crate) struct ObjCache(HashMap<PathBuf, ObjFile>);
-
-impl ObjCache {
-    /// The file at `path`, read now or before.
-    pub(crate) fn get(&mut self, path: &Path) -> Result<&ObjFile, SceneError> {
-        if !self.0.contains_key(path) {
-            self.0.insert(path.to_owned(), ObjFile::read(path)?);
-        }
-        self.0.get(path).ok_or_else(|| SceneError::unusable(path, "was not read"))
-    }
-
-    /// All files that were read.
-    pub(crate) fn files(&self) -> impl Iterator<Item = (&Path, &ObjFile)> {
-        self.0.iter().map(|(path, file)| (path.as_path(), file))
-    }
 }

@@ -1,23 +1,22 @@
 //! From the text of an .obj file to a text that `tobj` cannot fail on.
 //!
 //! `tobj` gives up on the whole file at the first bad index, and its index arithmetic can overflow.
-//! So the lines are read here first: corners become absolute position indices, polygons become fans
-//! of triangles, triangles that cannot be drawn are left out and counted, and what this program
-//! does not use (texture coordinates, normals, lines, points) goes. All positions come before all
-//! triangles, so that an index may point forwards. `tobj` then does the grouping by object and
-//! material and the renumbering.
+//! So the lines are read here first: corners become absolute indices, polygons become fans of
+//! triangles, triangles that cannot be drawn are left out and counted, and what this program does
+//! not use (lines, points, curves) goes. All positions, texture coordinates and normals come before all
+//! triangles, so that an index may point forwards; the first coordinate and the first normal stand for a corner
+//! that has none. `tobj` then does the grouping by object and material and the renumbering.
 
 use std::fmt::Write;
 use std::path::Path;
 
-use glam::{DVec3, Vec3};
+use glam::{Vec2, Vec3};
 
 use crate::assets::Dropped;
 use crate::error::SceneError;
 
-/// The farthest coordinate of a corner, 2⁶⁰: beyond it, squares of lengths leave single precision, and
-/// what bake places is left out as a whole.
-const FARTHEST: f64 = (1u64 << 60) as f64;
+use super::assemble::flaw;
+use super::srgb::linear;
 
 /// A clean .obj text and what was left out of it.
 #[derive(Debug, Default)]
@@ -36,23 +35,34 @@ pub(super) struct CleanObj {
     pub(super) libraries: Vec<String>,
 }
 
+/// What the corners of a file may name.
+#[derive(Debug, Default)]
+struct Pools {
+    positions: Vec<Vec3>,
+    /// Linear; as many as positions, or none if no position has one.
+    colors: Vec<Vec3>,
+    /// v downwards; NaN where the line is no coordinate.
+    uvs: Vec<Vec2>,
+    /// Zero where the line is no normal.
+    normals: Vec<Vec3>,
+}
+
 /// Reads `text`, the content of `path`.
 ///
 /// # Errors
 /// A line that cannot be understood, with its number.
 pub(super) fn clean(path: &Path, text: &str) -> Result<CleanObj, SceneError> {
-    let positions = read_positions(path, text)?;
+    let pools = Pools::read(path, text)?;
     let mut clean = CleanObj::default();
-    for p in &positions {
-        // Shortest text that reads back to the same number; NaN and infinities too.
-        let _ = writeln!(clean.text, "v {} {} {}", p.x, p.y, p.z);
-    }
-    let mut defined = 0;
+    pools.write(&mut clean.text);
+    let mut defined = [0; 3];
     for (number, line) in logical_lines(text) {
         let (keyword, rest) = split_keyword(&line);
         match keyword {
-            "v" => defined += 1,
-            "f" => clean.face(&positions, defined, rest).map_err(|message| {
+            "v" => defined[0] += 1,
+            "vt" => defined[1] += 1,
+            "vn" => defined[2] += 1,
+            "f" => clean.face(&pools, defined, rest).map_err(|message| {
                 SceneError::model(path, number, format!("{message} in \"{}\"", line.trim()))
             })?,
             "o" | "g" => clean.name(keyword, if rest.is_empty() { "unnamed" } else { rest }),
@@ -73,7 +83,7 @@ impl CleanObj {
     }
 
     /// A polygon as a fan of triangles, the good ones kept.
-    fn face(&mut self, positions: &[Vec3], defined: usize, rest: &str) -> Result<(), String> {
+    fn face(&mut self, pools: &Pools, defined: [usize; 3], rest: &str) -> Result<(), String> {
         let corners =
             rest.split_whitespace().map(|word| corner(word, defined)).collect::<Result<Vec<_>, _>>()?;
         if corners.len() < 3 {
@@ -82,60 +92,137 @@ impl CleanObj {
             return Ok(());
         }
         for pair in corners[1..].windows(2) {
-            self.triangle(positions, [corners[0], pair[0], pair[1]]);
+            self.triangle(pools, [corners[0], pair[0], pair[1]]);
         }
         Ok(())
     }
 
-    fn triangle(&mut self, positions: &[Vec3], corners: [Option<usize>; 3]) {
+    fn triangle(&mut self, pools: &Pools, corners: [Corner; 3]) {
         let id = self.triangles;
         self.triangles += 1;
-        let found = corners.map(|corner| positions.get(corner?).map(|p| p.as_dvec3()));
-        let [Some(a), Some(b), Some(c)] = found else {
-            self.dropped.bad_index += 1;
+        if let Some(flaw) = flaw(corners.map(|[position, ..]| pools.positions.get(position?).copied())) {
+            flaw.count(&mut self.dropped);
             return;
-        };
-        if ![a, b, c].into_iter().all(is_in_range) {
-            self.dropped.out_of_range += 1;
-        } else if (b - a).cross(c - a) == DVec3::ZERO {
-            self.dropped.zero_area += 1;
-        } else {
-            self.triangle_ids.push(id);
-            let [a, b, c] = corners.map(|corner| corner.unwrap_or_default() + 1);
-            let _ = writeln!(self.text, "f {a} {b} {c}");
+        }
+        self.triangle_ids.push(id);
+        self.text.push('f');
+        for corner in corners {
+            pools.write_corner(&mut self.text, corner);
+        }
+        self.text.push('\n');
+    }
+}
+
+impl Pools {
+    /// All `v`, `vt` and `vn` lines. A position must be one; a weight or a colour may follow it.
+    fn read(path: &Path, text: &str) -> Result<Self, SceneError> {
+        let mut pools = Self::default();
+        for (number, line) in logical_lines(text) {
+            let (keyword, rest) = split_keyword(&line);
+            match keyword {
+                "v" => pools.position(rest).ok_or_else(|| {
+                    let message = format!("three numbers expected in \"{}\"", line.trim());
+                    SceneError::model(path, number, message)
+                })?,
+                "vt" => {
+                    let [u, v] = numbers(rest, f32::NAN);
+                    // A line of one number lies on the edge where v is 0.
+                    let v = if v.is_nan() && !u.is_nan() { 0.0 } else { v };
+                    pools.uvs.push(Vec2::new(u, 1.0 - v));
+                }
+                "vn" => pools.normals.push(Vec3::from_array(numbers(rest, 0.0))),
+                _ => {}
+            }
+        }
+        Ok(pools)
+    }
+
+    fn position(&mut self, rest: &str) -> Option<()> {
+        let numbers: Vec<_> = rest.split_whitespace().take(8).map(str::parse::<f32>).collect();
+        let [Ok(x), Ok(y), Ok(z), more @ ..] = numbers.as_slice() else { return None };
+        if let [Ok(r), Ok(g), Ok(b), ..] = more {
+            // Those before had none: white.
+            self.colors.resize(self.positions.len(), Vec3::ONE);
+            let share = |s: f32| linear(if s.is_nan() { 1.0 } else { s.clamp(0.0, 1.0) });
+            self.colors.push(Vec3::new(share(*r), share(*g), share(*b)));
+        } else if !self.colors.is_empty() {
+            self.colors.push(Vec3::ONE);
+        }
+        self.positions.push(Vec3::new(*x, *y, *z));
+        Some(())
+    }
+
+    /// Numbers are written as the shortest text that reads back to the same; NaN and infinities too.
+    fn write(&self, text: &mut String) {
+        for (index, p) in self.positions.iter().enumerate() {
+            let _ = write!(text, "v {} {} {}", p.x, p.y, p.z);
+            if let Some(color) = self.colors.get(index) {
+                let _ = write!(text, " {} {} {}", color.x, color.y, color.z);
+            }
+            text.push('\n');
+        }
+        let none = (!self.uvs.is_empty()).then_some(Vec2::NAN);
+        for uv in none.iter().chain(&self.uvs) {
+            let _ = writeln!(text, "vt {} {}", uv.x, uv.y);
+        }
+        let none = (!self.normals.is_empty()).then_some(Vec3::ZERO);
+        for n in none.iter().chain(&self.normals) {
+            let _ = writeln!(text, "vn {} {} {}", n.x, n.y, n.z);
+        }
+    }
+
+    /// A corner whose position is there; what else it names may not be.
+    fn write_corner(&self, text: &mut String, [position, uv, normal]: Corner) {
+        let _ = write!(text, " {}", position.unwrap_or_default() + 1);
+        // The first one stands for none, so index 0 of the file is the second.
+        let place =
+            |index: Option<usize>, count: usize| index.filter(|&it| it < count).map_or(1, |it| it + 2);
+        match (self.uvs.len(), self.normals.len()) {
+            (0, 0) => {}
+            (uvs, 0) => {
+                let _ = write!(text, "/{}", place(uv, uvs));
+            }
+            (0, normals) => {
+                let _ = write!(text, "//{}", place(normal, normals));
+            }
+            (uvs, normals) => {
+                let _ = write!(text, "/{}/{}", place(uv, uvs), place(normal, normals));
+            }
         }
     }
 }
 
-fn is_in_range(position: DVec3) -> bool {
-    position.is_finite() && position.abs().max_element() <= FARTHEST
-}
-
-/// All `v` lines: the first three numbers of each (a weight or a colour may follow).
-fn read_positions(path: &Path, text: &str) -> Result<Vec<Vec3>, SceneError> {
-    let mut positions = Vec::new();
-    for (number, line) in logical_lines(text) {
-        let (keyword, rest) = split_keyword(&line);
-        if keyword == "v" {
-            let mut words = rest.split_whitespace().map(str::parse::<f32>);
-            let (Some(Ok(x)), Some(Ok(y)), Some(Ok(z))) = (words.next(), words.next(), words.next()) else {
-                let message = format!("three numbers expected in \"{}\"", line.trim());
-                return Err(SceneError::model(path, number, message));
-            };
-            positions.push(Vec3::new(x, y, z));
-        }
+/// The first numbers of a line; `none` where there is none.
+fn numbers<const N: usize>(rest: &str, none: f32) -> [f32; N] {
+    let mut found = [none; N];
+    for (number, word) in found.iter_mut().zip(rest.split_whitespace()) {
+        *number = word.parse().unwrap_or(none);
     }
-    Ok(positions)
+    found
 }
 
-/// Position index of a corner such as `7`, `7/1`, `7//3` or `-1`, from 0; `None` if there can be no
-/// such position. `defined` is how many positions came before the line.
-fn corner(word: &str, defined: usize) -> Result<Option<usize>, String> {
-    let index = word.split('/').next().unwrap_or_default();
+/// Indices of position, texture coordinate and normal, from 0; `None` where there can be no such thing.
+type Corner = [Option<usize>; 3];
+
+/// A corner such as `7`, `7/1`, `7//3` or `-1`. `defined` is how many of each came before the line.
+fn corner(word: &str, defined: [usize; 3]) -> Result<Corner, String> {
+    let mut corner = [None; 3];
+    for (place, index) in word.split('/').take(3).enumerate() {
+        if index.is_empty() && place > 0 {
+            continue;
+        }
+        corner[place] =
+            absolute(index, defined[place]).map_err(|()| format!("\"{word}\" is not a corner"))?;
+    }
+    Ok(corner)
+}
+
+/// An index from 0; `Err` if `index` is no whole number.
+fn absolute(index: &str, defined: usize) -> Result<Option<usize>, ()> {
     let index: i64 = match index.parse() {
         Ok(index) => index,
         Err(_) if is_integer(index) => return Ok(None),
-        Err(_) => return Err(format!("\"{word}\" is not a corner")),
+        Err(_) => return Err(()),
     };
     let absolute = if index < 0 {
         i64::try_from(defined).ok().and_then(|n| n.checked_add(index))

@@ -3,7 +3,9 @@
 use dot_vox::{Color, DotVoxData};
 use glam::Vec3;
 
-use crate::material::{Material, Surface};
+use crate::material::Material;
+
+use super::srgb;
 
 /// The material of palette entry `index`, counted from 0 as `dot_vox` counts (the file's number
 /// less one; MATL chunks count as the file does).
@@ -25,8 +27,8 @@ pub(super) fn material(data: &DotVoxData, index: u8) -> Material {
         Some("_metal") => Material::metal(albedo, share("_rough")),
         Some("_glass") => Material::dielectric(ior(number("_ri"), number("_ior"))),
         Some("_emit") => Material {
-            surface: Surface::Lambert { albedo },
             emission: albedo * share("_emit") * 4f32.powf(number("_flux").unwrap_or(0.0).clamp(0.0, 4.0)),
+            ..Material::lambert(albedo)
         },
         _ => Material::lambert(albedo),
     }
@@ -38,9 +40,6 @@ fn ior(ri: Option<f32>, ior: Option<f32>) -> f32 {
 }
 
 fn linear(colour: &Color) -> Vec3 {
-    let channel = |byte: u8| {
-        let s = f32::from(byte) / 255.0;
-        if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }
-    };
+    let channel = |byte: u8| srgb::linear(f32::from(byte) / 255.0);
     Vec3::new(channel(colour.r), channel(colour.g), channel(colour.b))
 }

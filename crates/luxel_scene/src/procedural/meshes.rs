@@ -37,7 +37,7 @@ pub(super) fn icosphere(subdivisions: u32) -> TriangleMesh {
     TriangleMesh::numbered(positions, triangles)
 }
 
-fn icosahedron() -> (Vec<Vec3>, Vec<[u32; 3]>) {
+pub(super) fn icosahedron() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let golden = (1.0 + 5f32.sqrt()) / 2.0;
     let mut positions = Vec::new();
     for (a, b) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {

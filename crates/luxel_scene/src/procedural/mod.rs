@@ -5,6 +5,7 @@ mod island;
 mod lantern;
 mod meshes;
 mod noise;
+mod rabbit;
 mod scatter;
 mod terrain;
 
@@ -16,13 +17,14 @@ pub(crate) use scatter::Scatter;
 /// The mesh of a recipe whose numbers are in range; `None` for a file.
 pub(crate) fn mesh(source: &MeshSource) -> Option<TriangleMesh> {
     Some(match *source {
-        MeshSource::File(_) | MeshSource::FilePart(..) => return None,
+        MeshSource::File(_) | MeshSource::FilePart(..) | MeshSource::ModelPrimitive { .. } => return None,
         MeshSource::Quad => meshes::quad(),
         MeshSource::Cube => meshes::cube(),
         MeshSource::Icosphere { subdivisions } => meshes::icosphere(subdivisions),
         MeshSource::TorusKnot { p, q, tube, segments, sides } => {
             meshes::torus_knot(p, q, tube, segments, sides)
         }
+        MeshSource::Rabbit { frequency } => rabbit::rabbit(frequency),
         MeshSource::Terrain { seed, cells, height } => terrain::terrain(seed, cells, height),
     })
 }

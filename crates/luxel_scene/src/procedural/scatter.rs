@@ -149,6 +149,7 @@ mod tests {
                 Surface::Lambert { .. } => 0,
                 Surface::Metal { .. } => 1,
                 Surface::Dielectric { .. } => 2,
+                ref other => panic!("{other:?} is no kind of a scattered sphere"),
             }] += 1;
         }
         assert!(kinds.iter().all(|&count| count > 20), "{kinds:?}");
