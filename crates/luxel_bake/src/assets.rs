@@ -1,17 +1,17 @@
 //! One structure per asset in use: built when the first entity shows the asset, given up with the last.
 //!
-//! The key of a built structure is the asset itself (its `Arc`), so other content under an old id is noticed.
+//! The key of a built structure is the asset itself (its `Arc`) with the settings that it was built by, so other content under an old id is noticed.
 //! Hidden entities keep their asset's structure: showing them again costs nothing.
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
-use luxel_scene::{AssetId, Assets};
+use luxel_scene::{AssetId, Assets, MeshStructure};
 
 use crate::journal::{Journal, Topic};
 use crate::objects::{Object, ObjectItem, Touched};
 use crate::store::Heaps;
+use crate::users::Users;
 use crate::{BakeCounters, BakeError};
 
 /// A kind of asset that has a structure of its own.
@@ -22,13 +22,22 @@ pub(crate) trait BakedAsset: Send + Sync + Sized + 'static {
     const TOPIC: Topic;
     /// Where its structure stands, and what is known of it.
     type Built: Send + Sync;
+    /// What its structure depends on besides the asset.
+    type Settings: Copy + PartialEq + Send + Sync;
 
     /// The asset that an object shows.
     fn shown_by(object: &ObjectItem) -> Option<AssetId>;
     /// The asset of an id.
     fn find(assets: &Assets, id: AssetId) -> Option<&Arc<Self>>;
+    /// The settings of the scene.
+    fn settings(wish: &MeshStructure) -> Self::Settings;
     /// Builds the structure and places it in the heaps.
-    fn build(&self, heaps: &mut Heaps, journal: &mut Journal) -> Result<Self::Built, BakeError>;
+    fn build(
+        &self,
+        settings: &Self::Settings,
+        heaps: &mut Heaps,
+        journal: &mut Journal,
+    ) -> Result<Self::Built, BakeError>;
     /// Gives back what [`Self::build`] placed.
     fn release(built: &Self::Built, heaps: &mut Heaps, journal: &mut Journal);
     /// The counters of structures built and given up.
@@ -38,20 +47,20 @@ pub(crate) trait BakedAsset: Send + Sync + Sized + 'static {
 /// The structures of a kind of asset, and who uses them.
 #[derive(Resource)]
 pub(crate) struct Built<A: BakedAsset> {
-    used: EntityHashMap<AssetId>,
-    users: BTreeMap<AssetId, u32>,
+    users: Users<AssetId>,
     structures: BTreeMap<AssetId, Structure<A>>,
 }
 
 /// What became of an asset.
 struct Structure<A: BakedAsset> {
     asset: Arc<A>,
+    settings: A::Settings,
     outcome: Result<A::Built, BakeError>,
 }
 
 impl<A: BakedAsset> Default for Built<A> {
     fn default() -> Self {
-        Self { used: EntityHashMap::default(), users: BTreeMap::new(), structures: BTreeMap::new() }
+        Self { users: Users::default(), structures: BTreeMap::new() }
     }
 }
 
@@ -61,34 +70,28 @@ impl<A: BakedAsset> Built<A> {
         self.structures.get(&id)?.outcome.as_ref().ok()
     }
 
+    /// An asset and its structure, likewise.
+    pub(crate) fn with_asset(&self, id: AssetId) -> Option<(&A, &A::Built)> {
+        let structure = self.structures.get(&id)?;
+        Some((&structure.asset, structure.outcome.as_ref().ok()?))
+    }
+
     /// Every structure, by rising asset id.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (AssetId, &A, &A::Built)> {
         self.structures.iter().filter_map(|(id, s)| Some((*id, &*s.asset, s.outcome.as_ref().ok()?)))
     }
 
-    /// Notes which asset an entity uses.
-    fn set_user(&mut self, entity: Entity, asset: Option<AssetId>) {
-        if let Some(id) = asset {
-            *self.users.entry(id).or_default() += 1;
-        }
-        let old = match asset {
-            Some(id) => self.used.insert(entity, id),
-            None => self.used.remove(&entity),
-        };
-        if let Some(id) = old
-            && let Some(count) = self.users.get_mut(&id)
-        {
-            *count -= 1;
-            if *count == 0 {
-                self.users.remove(&id);
-            }
-        }
-    }
-
-    fn release_unused(&mut self, assets: &Assets, heaps: &mut Heaps, journal: &mut Journal) {
+    fn release_unused(
+        &mut self,
+        assets: &Assets,
+        settings: &A::Settings,
+        heaps: &mut Heaps,
+        journal: &mut Journal,
+    ) {
         let users = &self.users;
         let is_current = |id: &AssetId, structure: &Structure<A>| {
-            users.contains_key(id)
+            users.contains(id)
+                && structure.settings == *settings
                 && A::find(assets, *id).is_some_and(|asset| Arc::ptr_eq(asset, &structure.asset))
         };
         for (_, structure) in self.structures.extract_if(.., |id, structure| !is_current(id, structure)) {
@@ -99,14 +102,21 @@ impl<A: BakedAsset> Built<A> {
         }
     }
 
-    fn build_missing(&mut self, assets: &Assets, heaps: &mut Heaps, journal: &mut Journal) {
-        for id in
-            self.users.keys().filter(|id| !self.structures.contains_key(id)).copied().collect::<Vec<_>>()
-        {
+    fn build_missing(
+        &mut self,
+        assets: &Assets,
+        settings: &A::Settings,
+        heaps: &mut Heaps,
+        journal: &mut Journal,
+    ) {
+        for id in self.users.keys() {
+            if self.structures.contains_key(&id) {
+                continue;
+            }
             let Some(asset) = A::find(assets, id) else { continue };
-            let outcome = asset.build(heaps, journal);
+            let outcome = asset.build(settings, heaps, journal);
             *A::counters(&mut journal.counters).0 += u64::from(outcome.is_ok());
-            self.structures.insert(id, Structure { asset: Arc::clone(asset), outcome });
+            self.structures.insert(id, Structure { asset: Arc::clone(asset), settings: *settings, outcome });
         }
     }
 
@@ -129,16 +139,18 @@ pub(crate) fn build_assets<A: BakedAsset>(
     touched: Res<Touched>,
     objects: Query<Object>,
     assets: Res<Assets>,
+    wish: Res<MeshStructure>,
     mut built: ResMut<Built<A>>,
     mut heaps: ResMut<Heaps>,
     mut journal: Journal,
 ) {
     let object = |entity: Entity| objects.get(entity).ok();
     for &entity in &touched.0 {
-        built.set_user(entity, object(entity).and_then(|object| A::shown_by(&object)));
+        built.users.set(entity, object(entity).and_then(|object| A::shown_by(&object)).into_iter().collect());
     }
-    built.release_unused(&assets, &mut heaps, &mut journal);
-    built.build_missing(&assets, &mut heaps, &mut journal);
+    let settings = A::settings(&wish);
+    built.release_unused(&assets, &settings, &mut heaps, &mut journal);
+    built.build_missing(&assets, &settings, &mut heaps, &mut journal);
     for &entity in &touched.0 {
         let complaint = object(entity).and_then(|object| built.complaint(&object));
         journal.error(entity, A::TOPIC, complaint);

@@ -5,14 +5,19 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{LogLevel, ScheduleBuildSettings, SingleThreadedExecutor};
 use bevy_ecs::world::WorldId;
 use luxel_flat::FlatScene;
-use luxel_scene::{Assets, Environment, MeshAsset, RenderSettings, SphereCloud, VolumeAsset};
+use luxel_scene::{Assets, Environment, MeshAsset, MeshStructure, RenderSettings, SphereCloud, VolumeAsset};
 
+use crate::albedo_tables::place_albedo_tables;
 use crate::assets::{Built, build_assets};
+use crate::attributes::{Attributes, build_attributes};
 use crate::camera::{View, find_camera};
 use crate::cloud::Cloud;
+use crate::environment::{Surroundings, place_environment};
 use crate::features::{Features, find_features};
+use crate::images::{Images, place_images};
 use crate::instances::{Instances, place_objects, write_instances};
 use crate::journal::{Complaints, Revision};
+use crate::lights::{Lights, place_lights};
 use crate::materials::{MaterialSlots, shade};
 use crate::objects::{Touched, find_touched};
 use crate::propagate::propagate;
@@ -20,9 +25,10 @@ use crate::publish::{Published, publish};
 use crate::report::{BakeReport, report};
 use crate::spheres::place_spheres;
 use crate::store::Heaps;
+use crate::textures::{Textures, find_textures, write_textures};
 use crate::tlas::{Tlas, update_tlas};
 use crate::validate::validate;
-use crate::{BakeCounters, BakeError, SphereTuning};
+use crate::{BakeCounters, BakeError, SphereTuning, TextureBudget};
 
 /// The steps of a run, one after the other.
 ///
@@ -31,9 +37,9 @@ use crate::{BakeCounters, BakeError, SphereTuning};
 pub enum BakeSet {
     /// World transforms and visibility; which objects changed.
     Propagate,
-    /// Material slots and records.
+    /// Images, texture slots, material slots and records; the surroundings.
     Shading,
-    /// Structures of meshes, volumes and the sphere cloud.
+    /// Structures of meshes, volumes and the sphere cloud; attributes.
     Geometry,
     /// Camera, origin of tracer space, instance records, TLAS.
     Instances,
@@ -51,12 +57,17 @@ pub fn install(world: &mut World) {
     world.insert_resource(Complaints::default());
     world.insert_resource(Touched::default());
     world.insert_resource(MaterialSlots::default());
+    world.insert_resource(Textures::default());
+    world.insert_resource(Images::default());
+    world.insert_resource(Surroundings::default());
+    world.insert_resource(Attributes::default());
     world.insert_resource(Heaps::default());
     world.insert_resource(Built::<MeshAsset>::default());
     world.insert_resource(Built::<VolumeAsset>::default());
     world.insert_resource(Cloud::default());
     world.insert_resource(View::default());
     world.insert_resource(Instances::default());
+    world.insert_resource(Lights::default());
     world.insert_resource(Tlas::default());
     world.insert_resource(Features::default());
     world.insert_resource(Published::default());
@@ -67,7 +78,9 @@ fn ensure_scene_resources(world: &mut World) {
     world.init_resource::<Environment>();
     world.init_resource::<RenderSettings>();
     world.init_resource::<SphereCloud>();
+    world.init_resource::<MeshStructure>();
     world.init_resource::<SphereTuning>();
+    world.init_resource::<TextureBudget>();
 }
 
 /// Keeps the flat scene of one world up to date; see the crate's text.
@@ -146,13 +159,14 @@ fn schedule() -> Schedule {
         )
             .chain(),
     );
-    let geometry = (build_assets::<MeshAsset>, build_assets::<VolumeAsset>, place_spheres);
-    let instances = (find_camera, place_objects, write_instances, update_tlas);
+    let shading = (find_textures, place_images, write_textures, shade, place_environment);
+    let geometry = (build_assets::<MeshAsset>, build_assets::<VolumeAsset>, build_attributes, place_spheres);
+    let instances = (find_camera, place_objects, write_instances, place_lights, update_tlas);
     schedule.add_systems((propagate, find_touched).chain().in_set(BakeSet::Propagate));
-    schedule.add_systems(shade.in_set(BakeSet::Shading));
+    schedule.add_systems(shading.chain().in_set(BakeSet::Shading));
     schedule.add_systems(geometry.chain().in_set(BakeSet::Geometry));
     schedule.add_systems(instances.chain().in_set(BakeSet::Instances));
-    schedule.add_systems(find_features.in_set(BakeSet::Features));
+    schedule.add_systems((find_features, place_albedo_tables).chain().in_set(BakeSet::Features));
     schedule.add_systems(publish.in_set(BakeSet::Publish));
     schedule
 }

@@ -4,8 +4,8 @@
 //! `ActiveCamera` counts; among equals, and if none is marked, the one of the smallest stable id.
 use bevy_ecs::prelude::*;
 use glam::DVec3;
-use luxel_flat::CameraRecord;
-use luxel_scene::{ActiveCamera, Camera, GlobalTransform, Name, StableId, Transform};
+use luxel_flat::{CAMERA_ORTHOGRAPHIC, CAMERA_PERSPECTIVE, CameraRecord};
+use luxel_scene::{ActiveCamera, Camera, GlobalTransform, Name, Projection, StableId, Transform};
 
 use crate::BakeError;
 use crate::lattice::{FARTHEST, LARGEST};
@@ -49,22 +49,32 @@ impl CameraView {
         Ok(Self { eye, right, up, back, camera: *camera })
     }
 
-    /// True unless the camera is a pinhole.
+    /// True unless the camera is a pinhole, or has parallel rays.
     pub(crate) fn has_lens(&self) -> bool {
-        self.camera.lens_radius > 0.0
+        self.camera.lens_radius > 0.0 && !self.is_orthographic()
+    }
+
+    /// True if the camera's rays are parallel.
+    pub(crate) fn is_orthographic(&self) -> bool {
+        matches!(self.camera.projection, Projection::Orthographic { .. })
     }
 
     /// The record for a film of that many pixels, in tracer space (`luxel_flat::params`).
     pub(crate) fn record(&self, anchor: DVec3, width: u32, height: u32) -> CameraRecord {
-        let half_height = (0.5 * self.camera.vertical_fov).tan();
+        let (kind, half_height, ahead) = match self.camera.projection {
+            Projection::Perspective { vertical_fov } => {
+                (CAMERA_PERSPECTIVE, (0.5 * vertical_fov).tan(), -self.back)
+            }
+            Projection::Orthographic { height } => (CAMERA_ORTHOGRAPHIC, 0.5 * height, DVec3::ZERO),
+        };
         let half_width = half_height * f64::from(width) / f64::from(height);
         let single = |v: DVec3| v.as_vec3().to_array();
         // A pinhole is sharp everywhere: with 1 the code for a lens makes its rays, bit for bit.
         let focus_distance = if self.has_lens() { self.camera.focus_distance } else { 1.0 };
         CameraRecord {
             origin: single(self.eye - anchor),
-            lens_radius: self.camera.lens_radius as f32,
-            corner: single(self.up * half_height - self.right * half_width - self.back),
+            lens_radius: if self.has_lens() { self.camera.lens_radius as f32 } else { 0.0 },
+            corner: single(self.up * half_height - self.right * half_width + ahead),
             focus_distance: focus_distance as f32,
             dx: single(self.right * (2.0 * half_width / f64::from(width))),
             width,
@@ -72,15 +82,25 @@ impl CameraView {
             height,
             right: single(self.right),
             up: single(self.up),
+            kind,
+            forward: single(-self.back),
             ..CameraRecord::default()
         }
     }
 }
 
 fn check_lens(camera: &Camera) -> Result<(), &'static str> {
-    let Camera { vertical_fov, lens_radius, focus_distance } = *camera;
-    if !(vertical_fov > 0.0 && vertical_fov < std::f64::consts::PI) {
-        return Err("the camera's field of view must lie between 0 and 180 degrees");
+    let Camera { projection, lens_radius, focus_distance } = *camera;
+    match projection {
+        Projection::Perspective { vertical_fov }
+            if !(vertical_fov > 0.0 && vertical_fov < std::f64::consts::PI) =>
+        {
+            return Err("the camera's field of view must lie between 0 and 180 degrees");
+        }
+        Projection::Orthographic { height } if !(height > 0.0 && height <= LARGEST) => {
+            return Err("the orthographic camera's height must be a positive number");
+        }
+        _ => {}
     }
     if !(0.0..=LARGEST).contains(&lens_radius) {
         return Err("the camera's lens radius must be zero or a positive number");
@@ -130,7 +150,7 @@ mod tests {
 
     fn record(own: Transform, parent: Transform) -> CameraRecord {
         let camera =
-            Camera { vertical_fov: std::f64::consts::FRAC_PI_2, lens_radius: 0.5, focus_distance: 3.0 };
+            Camera { lens_radius: 0.5, focus_distance: 3.0, ..Camera::pinhole(std::f64::consts::FRAC_PI_2) };
         let global = GlobalTransform(parent.affine() * own.affine());
         CameraView::new(&camera, &global, &own).unwrap().record(DVec3::ONE, 200, 100)
     }
@@ -170,18 +190,47 @@ mod tests {
     }
 
     #[test]
+    fn an_orthographic_camera_has_parallel_rays_from_a_film_of_its_height() {
+        let own = Transform {
+            rotation: DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2),
+            ..Transform::at(DVec3::new(5.0, 1.0, 0.0))
+        };
+        let camera = Camera {
+            projection: Projection::Orthographic { height: 4.0 },
+            lens_radius: 0.5,
+            focus_distance: 3.0,
+        };
+        let view = CameraView::new(&camera, &GlobalTransform(own.affine()), &own).unwrap();
+        assert!(view.is_orthographic() && !view.has_lens());
+        let record = view.record(DVec3::ZERO, 200, 100);
+        assert_eq!((record.kind, record.lens_radius, record.focus_distance), (CAMERA_ORTHOGRAPHIC, 0.0, 1.0));
+        // It looks along −X; its right is −Z. The film is 8 × 4 metres around the eye.
+        assert!(Vec3::from(record.forward).abs_diff_eq(Vec3::NEG_X, 1e-6));
+        let start = |x: f32, y: f32| {
+            let [corner, dx, dy] = [record.corner, record.dx, record.dy].map(Vec3::from);
+            Vec3::from(record.origin) + corner + dx * x + dy * y
+        };
+        assert!(start(0.0, 0.0).abs_diff_eq(Vec3::new(5.0, 3.0, 4.0), 1e-5), "{}", start(0.0, 0.0));
+        assert!(start(200.0, 100.0).abs_diff_eq(Vec3::new(5.0, -1.0, -4.0), 1e-5));
+    }
+
+    #[test]
     fn senseless_cameras_are_refused() {
         let good = Camera::default();
         let place =
             |own: Transform, camera: Camera| CameraView::new(&camera, &GlobalTransform(own.affine()), &own);
         assert!(place(Transform::default(), good).is_ok());
         for fov in [0.0, -1.0, 4.0, f64::NAN] {
-            assert!(place(Transform::default(), Camera { vertical_fov: fov, ..good }).is_err(), "{fov}");
+            assert!(place(Transform::default(), Camera::pinhole(fov)).is_err(), "{fov}");
         }
         assert!(place(Transform::default(), Camera { lens_radius: -1.0, ..good }).is_err());
         assert!(
             place(Transform::default(), Camera { lens_radius: 1.0, focus_distance: 0.0, ..good }).is_err()
         );
+        for height in [0.0, -1.0, f64::INFINITY, f64::NAN] {
+            let projection = Projection::Orthographic { height };
+            assert!(place(Transform::default(), Camera { projection, ..good }).is_err(), "{height}");
+        }
         assert!(place(Transform { scale: DVec3::ZERO, ..Transform::default() }, good).is_err());
         assert!(place(Transform::at(DVec3::NAN), good).is_err());
     }

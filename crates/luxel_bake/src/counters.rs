@@ -28,12 +28,20 @@ counters! {
     transforms_propagated,
     /// Material records that got a new value.
     materials_written,
-    /// Material parameters that got a new value.
-    params_written,
+    /// Texture slots that got a new value.
+    textures_written,
+    /// Images put among the texels.
+    images_placed,
+    /// Images taken from the texels, because nothing shows them any more or at another size.
+    images_released,
     /// Mesh BVHs built.
     blas_built,
     /// Mesh BVHs given up because nothing uses their mesh any more.
     blas_freed,
+    /// Attributes of meshes built.
+    attributes_built,
+    /// Attributes of meshes given up because nothing uses them any more.
+    attributes_freed,
     /// Voxel octrees built.
     svo_built,
     /// Voxel octrees given up because nothing uses their volume any more.
@@ -55,6 +63,8 @@ counters! {
     instances_written,
     /// TLAS builds.
     tlas_builds,
+    /// Tables of lights made, each with its light tree.
+    light_tables,
     /// Changes of the set of features.
     features_changed,
     /// Flat scenes published.

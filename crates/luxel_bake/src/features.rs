@@ -4,16 +4,19 @@
 //! for is looked for again only when a heap that it was read from has another stamp or length.
 use bevy_ecs::prelude::*;
 use luxel_flat::{
-    Feature, FeatureSet, KIND_MESH, MATERIAL_DIELECTRIC, MATERIAL_EMISSIVE, MATERIAL_LAMBERT, MATERIAL_METAL,
-    MaterialRecord,
+    Feature, FeatureSet, INSTANCE_ALPHA, INSTANCE_ATTRIBUTES, Instance, KIND_MESH, MATERIAL_DIELECTRIC,
+    MATERIAL_EMISSIVE, MATERIAL_LAMBERT, MATERIAL_METAL, MATERIAL_PRINCIPLED, MATERIAL_SEMI_SPECULAR,
+    MATERIAL_THIN, MaterialRecord, TEXTURE_ROLE_NORMAL,
 };
 use luxel_scene::{Environment, RenderSettings, VolumeAsset};
 
 use crate::assets::Built;
 use crate::camera::View;
 use crate::cloud::Cloud;
+use crate::environment::Surroundings;
 use crate::instances::Instances;
 use crate::journal::Journal;
+use crate::lights::Lights;
 use crate::store::Heaps;
 
 /// The features of the scene, and of which revisions.
@@ -39,6 +42,8 @@ pub(crate) fn find_features(
     instances: Res<Instances>,
     volumes: Res<Built<VolumeAsset>>,
     environment: Res<Environment>,
+    surroundings: Res<Surroundings>,
+    lights: Res<Lights>,
     settings: Res<RenderSettings>,
     view: Res<View>,
     mut features: ResMut<Features>,
@@ -55,10 +60,13 @@ pub(crate) fn find_features(
         features.key = key;
         features.of_objects = of_objects(&heaps, &cloud, &instances, &volumes);
     }
-    let lens = view.0.as_ref().is_ok_and(|view| view.has_lens());
-    let all = (features.of_objects)
+    let camera = view.0.as_ref().ok();
+    let all = (features.of_objects.union(lights.features()))
+        .with(Feature::Lights, lights.features().has(Feature::Lights) || surroundings.size().is_some())
+        .with(Feature::EnvironmentMap, surroundings.size().is_some())
+        .with(Feature::Orthographic, camera.is_some_and(|view| view.is_orthographic()))
         .with(Feature::GradientSky, matches!(*environment, Environment::Gradient { .. }))
-        .with(Feature::Lens, lens)
+        .with(Feature::Lens, camera.is_some_and(|view| view.has_lens()))
         .with(Feature::Roulette, has_roulette(&settings));
     if all != features.all {
         features.all = all;
@@ -87,7 +95,8 @@ fn of_objects(
         set = set.with(Feature::Spheres, true).union(of_slots(&mut live.map(|sphere| sphere.material)));
     }
     for mesh in records.iter().filter(|record| record.kind == KIND_MESH && record.node_count > 0) {
-        set = set.with(Feature::Triangles, true).union(of_slots(&mut std::iter::once(mesh.material_first)));
+        let material = &materials[mesh.material_first as usize];
+        set = set.with(Feature::Triangles, true).union(of_material(material)).union(of_mesh(mesh, material));
     }
     for (slot, asset) in instances.volumes() {
         let record = records[slot as usize];
@@ -99,10 +108,28 @@ fn of_objects(
     set
 }
 
+/// What only meshes can call for.
+fn of_mesh(mesh: &Instance, material: &MaterialRecord) -> FeatureSet {
+    FeatureSet::NONE
+        .with(Feature::Attributes, mesh.flags & INSTANCE_ATTRIBUTES != 0)
+        .with(Feature::Alpha, mesh.flags & INSTANCE_ALPHA != 0)
+        .with(Feature::Textures, material.texture_mask != 0)
+        .with(Feature::NormalMaps, material.texture_mask & TEXTURE_ROLE_NORMAL != 0)
+}
+
+/// What a material calls for on any kind of primitive.
 fn of_material(record: &MaterialRecord) -> FeatureSet {
+    let is_principled = record.kind == MATERIAL_PRINCIPLED;
+    let is_clear = is_principled && record.transmission > 0.0;
+    let absorbs = record.flags & MATERIAL_THIN == 0 && record.absorption.iter().any(|a| *a > 0.0);
     FeatureSet::NONE
         .with(Feature::Lambert, record.kind == MATERIAL_LAMBERT)
         .with(Feature::Metal, record.kind == MATERIAL_METAL)
         .with(Feature::Dielectric, record.kind == MATERIAL_DIELECTRIC)
+        .with(Feature::SemiSpecular, record.kind == MATERIAL_SEMI_SPECULAR)
+        .with(Feature::Principled, is_principled)
+        .with(Feature::Transmission, is_clear)
+        .with(Feature::Absorption, is_clear && absorbs)
+        .with(Feature::Clearcoat, is_principled && record.clearcoat > 0.0)
         .with(Feature::Emission, record.flags & MATERIAL_EMISSIVE != 0)
 }

@@ -6,20 +6,23 @@ use std::collections::BTreeMap;
 
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3};
-use luxel_flat::{Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, Span};
+use luxel_flat::{INSTANCE_ALPHA, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, Span, TEXTURE_ROLE_COLOR};
 use luxel_geom::Aabb;
-use luxel_scene::{AssetId, MeshAsset, VolumeAsset};
+use luxel_scene::{AssetId, MeshAsset, Opacity, VolumeAsset};
 
 use crate::assets::Built;
+use crate::attributes::{Attributes, BuiltAttributes};
 use crate::camera::View;
 use crate::cloud::Cloud;
 use crate::identities::Identities;
+use crate::images::Images;
 use crate::journal::{Journal, Refusal, Topic};
 use crate::lattice::{Extent, tracer_anchor};
 use crate::materials::MaterialSlots;
 use crate::objects::{Object, ObjectItem, Touched};
 use crate::placement::Placement;
 use crate::store::{Heaps, Store};
+use crate::textures::Textures;
 use crate::{BakeError, Disabled};
 
 /// What can be placed. An entity may be a mesh and a volume, though not with one stable id.
@@ -106,6 +109,9 @@ pub(crate) struct Structures<'w> {
     meshes: Res<'w, Built<MeshAsset>>,
     volumes: Res<'w, Built<VolumeAsset>>,
     slots: Res<'w, MaterialSlots>,
+    attributes: Res<'w, Attributes>,
+    textures: Res<'w, Textures>,
+    images: Res<'w, Images>,
 }
 
 /// Brings the list of placed objects up to date with every touched entity and the cloud.
@@ -139,6 +145,8 @@ impl Structures<'_> {
         let (Some(mesh), Some(material_first)) = (built, self.slots.first(object.entity)) else {
             return Ok(None);
         };
+        let attributes = self.attributes.of(object.entity);
+        let alpha = if self.lets_rays_pass(object, attributes) { INSTANCE_ALPHA } else { 0 };
         let header = Instance {
             kind: KIND_MESH,
             node_first: mesh.nodes.first,
@@ -146,9 +154,24 @@ impl Structures<'_> {
             primitive_first: mesh.triangles.first,
             primitive_count: mesh.triangles.count,
             material_first,
+            flags: attributes.map_or(0, BuiltAttributes::flags) | alpha,
+            attribute_offset: attributes.map_or(0, BuiltAttributes::offset),
             ..Instance::default()
         };
         source(object, mesh.bounds, header, None)
+    }
+
+    /// True unless every point of a mesh is there for every ray, whatever its material allows.
+    fn lets_rays_pass(&self, object: &ObjectItem, attributes: Option<&BuiltAttributes>) -> bool {
+        let color = self.textures.in_role(object.entity, TEXTURE_ROLE_COLOR);
+        let image = color.and_then(|texture| self.images.get(texture.image));
+        let least = image.map_or(1.0, |image| f32::from(image.min_alpha) / 255.0)
+            * attributes.map_or(1.0, |attributes| attributes.min_alpha);
+        match object.material.map_or(Opacity::Opaque, |material| material.opacity) {
+            Opacity::Opaque => false,
+            Opacity::Mask { alpha, cutoff } => alpha * least < cutoff,
+            Opacity::Blend { alpha } => alpha * least < 1.0,
+        }
     }
 
     fn volume(&self, object: &ObjectItem) -> Result<Option<Source>, Refusal> {

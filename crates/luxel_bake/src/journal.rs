@@ -20,6 +20,13 @@ pub(crate) struct Revision(pub u64);
 pub(crate) enum Topic {
     Hierarchy,
     Material,
+    Opacity,
+    Textures,
+    Texels,
+    Environment,
+    Attributes,
+    Lamp,
+    Lights,
     Sphere,
     SphereScale,
     Mesh,
@@ -68,6 +75,35 @@ pub enum BakeWarning {
         /// Why.
         reason: Disabled,
     },
+    /// Textures are left out.
+    Textures {
+        /// The entity.
+        entity: String,
+        /// Which, and why.
+        faults: String,
+    },
+    /// Images are shown smaller than they are, so that they fit into memory.
+    ShrunkImages {
+        /// Bytes that they may take.
+        budget: u64,
+        /// Asset id, width and height of the image, width and height that it is shown at.
+        images: Vec<(u32, [u32; 2], [u32; 2])>,
+    },
+    /// There is no image of the surroundings; they are black.
+    NoEnvironment {
+        /// Asset id.
+        asset: u32,
+    },
+    /// There are too many lights to sample them all.
+    UnsampledLights {
+        /// Triangles that are found by scattering alone.
+        triangles: u64,
+    },
+    /// The opacity of a sphere or of voxels has no effect.
+    IgnoredOpacity {
+        /// The entity.
+        entity: String,
+    },
     /// A sphere under a non-uniform scale is drawn as a sphere of the largest axis.
     NonUniformSphere {
         /// The entity.
@@ -80,8 +116,13 @@ impl BakeWarning {
     pub fn reason(&self) -> Option<Disabled> {
         match self {
             Self::Disabled { reason, .. } => Some(*reason),
-            Self::NonUniformSphere { .. } => None,
+            _ => None,
         }
+    }
+
+    /// True if both are of one kind, for one reason.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other) && self.reason() == other.reason()
     }
 }
 
@@ -89,6 +130,22 @@ impl fmt::Display for BakeWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Disabled { entity, reason } => write!(f, "{entity} is not shown: {reason}"),
+            Self::Textures { entity, faults } => {
+                write!(f, "{entity} is shown without some of its textures ({faults})")
+            }
+            Self::ShrunkImages { budget, images } => fmt_shrunk(f, *budget, images),
+            Self::NoEnvironment { asset } => {
+                write!(f, "the surroundings are black: there is no usable image with asset id {asset}")
+            }
+            Self::UnsampledLights { triangles } => {
+                write!(
+                    f,
+                    "{triangles} shining triangles are too many to be sampled as lights; pictures will be noisy"
+                )
+            }
+            Self::IgnoredOpacity { entity } => {
+                write!(f, "{entity} is opaque: spheres and voxels have no opacity")
+            }
             Self::NonUniformSphere { entity } => {
                 write!(
                     f,
@@ -96,6 +153,21 @@ impl fmt::Display for BakeWarning {
                 )
             }
         }
+    }
+}
+
+/// Images that are told one by one.
+const IMAGES_TOLD: usize = 5;
+
+fn fmt_shrunk(f: &mut fmt::Formatter<'_>, budget: u64, images: &[(u32, [u32; 2], [u32; 2])]) -> fmt::Result {
+    write!(f, "images do not fit into {budget} bytes; smaller than they are:")?;
+    for (i, (id, from, to)) in images.iter().take(IMAGES_TOLD).enumerate() {
+        let separator = if i == 0 { "" } else { "," };
+        write!(f, "{separator} image {id} ({}×{}) at {}×{}", from[0], from[1], to[0], to[1])?;
+    }
+    match images.len().saturating_sub(IMAGES_TOLD) {
+        0 => Ok(()),
+        more => write!(f, ", and {more} more"),
     }
 }
 

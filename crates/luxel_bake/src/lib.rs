@@ -7,7 +7,8 @@
 //! A [`Baker`] is a schedule of systems (the sets are [`BakeSet`]s). One system asks bevy_ecs's change
 //! detection which objects were touched; the others make what they keep of a touched object equal to what
 //! it says now. Work that depends on several objects has a key: the TLAS the boxes that it was built over,
-//! the sphere cloud its options and root cell, the records their origin, an asset's structure the asset.
+//! the sphere cloud its options and root cell, the records their origin, an asset's structure the asset, attributes the
+//! mesh as it was built and the kind of normals, texels the images in use and the [`TextureBudget`].
 //!
 //! ▪ Invariants. There is no dirty flag: a changed component or a changed key is the only trigger. What is
 //! published is a function of the world alone, but for slots and the shape of the spheres' structure: an edited world
@@ -40,37 +41,49 @@
 //! assert_eq!((work.sphere_updates, work.materials_written), (1, 0));
 //! # Ok::<(), luxel_bake::BakeError>(())
 //! ```
+mod albedo_tables;
 mod assets;
+mod attributes;
 mod baker;
 mod camera;
 mod cloud;
 mod counters;
+mod environment;
 mod error;
 mod features;
 mod identities;
+mod images;
 mod instances;
 mod journal;
 mod lattice;
+mod lights;
+mod material_record;
 mod materials;
+mod mesh_options;
 mod meshes;
 mod objects;
 mod placement;
 mod propagate;
 mod publish;
 mod report;
+mod resample;
 mod spans;
 mod spheres;
 mod store;
+mod textures;
 mod tlas;
 mod tuning;
+mod users;
 mod validate;
 mod volumes;
 
 pub use baker::{BakeSet, Baker, install};
 pub use counters::BakeCounters;
 pub use error::BakeError;
+pub use images::TextureBudget;
 pub use journal::{BakeWarning, Disabled};
+pub use mesh_options::build_options;
 pub use objects::Shown;
-pub use report::{BakeReport, MeshFacts, SphereFacts, VolumeFacts};
+pub use report::{BakeReport, ImageFacts, MeshFacts, SphereFacts, VolumeFacts};
 pub use spans::SpanAllocator;
 pub use tuning::SphereTuning;

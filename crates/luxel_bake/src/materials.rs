@@ -1,99 +1,63 @@
 //! Material records: a slot per entity that needs one, a range of slots per palette.
 //!
-//! A record's header says whether it emits and where its radiance stands, so the record itself is the
-//! memory of which parameter it owns. A free slot holds a zero record and owns nothing.
+//! A free slot holds a zero record. Which light a slot belongs to (`light_first`) is not said here: an edited record
+//! keeps it, one in a new slot has none.
 use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
-use glam::Vec3;
-use luxel_flat::{
-    MATERIAL_DIELECTRIC, MATERIAL_EMISSIVE, MATERIAL_LAMBERT, MATERIAL_METAL, MaterialRecord, Span,
-};
-use luxel_scene::{Assets, Material, Surface};
+use luxel_flat::{MaterialRecord, NONE, Span};
+use luxel_scene::{Assets, Material};
 
 use crate::BakeError;
-use crate::journal::{Journal, Topic};
+use crate::journal::{BakeWarning, Journal, Topic};
+use crate::material_record::record;
 use crate::objects::{Object, ObjectItem, Touched};
 use crate::store::{Heaps, Store};
+use crate::textures::{TextureSet, Textures};
 
-/// The material heap and its parameters.
+/// The material heap.
 #[derive(Default)]
 pub(crate) struct MaterialStore {
     pub records: Store<MaterialRecord>,
-    pub params: Store<[f32; 4]>,
 }
 
 impl MaterialStore {
-    /// Gives materials a range of slots.
-    pub(crate) fn place(&mut self, materials: &[Material], journal: &mut Journal) -> Result<Span, BakeError> {
-        let count = u32::try_from(materials.len()).map_err(|_| BakeError::HeapFull)?;
-        let span = self.records.reserve(count, journal.revision())?;
-        for (slot, material) in (span.first..).zip(materials) {
-            self.write(slot, material, journal)?;
+    /// Gives the entries of a palette a range of slots.
+    pub(crate) fn place_palette(
+        &mut self,
+        palette: &[Material],
+        journal: &mut Journal,
+    ) -> Result<Span, BakeError> {
+        let count = u32::try_from(palette.len()).map_err(|_| BakeError::HeapFull)?;
+        let span = self.reserve(count, journal)?;
+        for (slot, material) in (span.first..).zip(palette) {
+            self.write(slot, record(material, TextureSet::default()), journal);
         }
         Ok(span)
     }
 
-    /// Makes a slot say what the material says; writes only what differs.
-    pub(crate) fn write(
-        &mut self,
-        slot: u32,
-        material: &Material,
-        journal: &mut Journal,
-    ) -> Result<(), BakeError> {
-        let param = self.write_emission(slot, material.emission, journal)?;
-        let written = self.records.set(slot, record(material, param), journal.revision());
-        journal.counters.materials_written += u64::from(written);
-        Ok(())
+    /// A range of slots that are no lights.
+    fn reserve(&mut self, count: u32, journal: &mut Journal) -> Result<Span, BakeError> {
+        let span = self.records.reserve(count, journal.revision())?;
+        for slot in span.first..span.first + span.count {
+            let free = MaterialRecord { light_first: NONE, ..MaterialRecord::default() };
+            self.records.set(slot, free, journal.revision());
+        }
+        Ok(span)
     }
 
-    /// Gives a range of slots and their parameters back.
+    /// Makes a slot say what the record says, but for its light; writes only what differs.
+    fn write(&mut self, slot: u32, record: MaterialRecord, journal: &mut Journal) {
+        let record = MaterialRecord { light_first: self.records.get(slot).light_first, ..record };
+        let written = self.records.set(slot, record, journal.revision());
+        journal.counters.materials_written += u64::from(written);
+    }
+
+    /// Gives a range of slots back.
     pub(crate) fn release(&mut self, span: Span, journal: &mut Journal) {
         for slot in span.first..span.first + span.count {
-            let param = param(&self.records.get(slot));
-            self.params.release(param, journal.revision());
             self.records.set(slot, MaterialRecord::default(), journal.revision());
         }
         self.records.release(span, journal.revision());
-    }
-
-    /// The parameter range that a slot needs, filled in.
-    fn write_emission(
-        &mut self,
-        slot: u32,
-        emission: Vec3,
-        journal: &mut Journal,
-    ) -> Result<Span, BakeError> {
-        let (old, revision) = (param(&self.records.get(slot)), journal.revision());
-        if emission.max_element() <= 0.0 {
-            self.params.release(old, revision);
-            return Ok(Span::default());
-        }
-        let span = if old.count == 0 { self.params.reserve(1, revision)? } else { old };
-        let written = self.params.set(span.first, emission.extend(0.0).to_array(), revision);
-        journal.counters.params_written += u64::from(written);
-        Ok(span)
-    }
-}
-
-/// The parameters that a record owns.
-fn param(record: &MaterialRecord) -> Span {
-    Span { first: record.param_first, count: record.param_count }
-}
-
-/// The flat form of a material whose parameters stand at `param`.
-fn record(material: &Material, param: Span) -> MaterialRecord {
-    let (kind, color, scalar) = match material.surface {
-        Surface::Lambert { albedo } => (MATERIAL_LAMBERT, albedo, 0.0),
-        Surface::Metal { albedo, fuzz } => (MATERIAL_METAL, albedo, fuzz),
-        Surface::Dielectric { ior } => (MATERIAL_DIELECTRIC, Vec3::ONE, ior),
-    };
-    MaterialRecord {
-        kind,
-        flags: if param.count > 0 { MATERIAL_EMISSIVE } else { 0 },
-        param_first: param.first,
-        param_count: param.count,
-        color: color.to_array(),
-        scalar,
     }
 }
 
@@ -118,6 +82,7 @@ pub(crate) fn shade(
     touched: Res<Touched>,
     objects: Query<Object>,
     assets: Res<Assets>,
+    textures: Res<Textures>,
     mut slots: ResMut<MaterialSlots>,
     mut heaps: ResMut<Heaps>,
     mut journal: Journal,
@@ -126,8 +91,14 @@ pub(crate) fn shade(
         let object = objects.get(entity).ok();
         let material = object.as_ref().and_then(|o| o.material).copied().unwrap_or_default();
         let count = object.as_ref().map_or(0, |object| slots_needed(object, &assets));
-        let written = hold(entity, count, &material, &mut slots, &mut heaps.materials, &mut journal);
+        let record = record(&material, textures.set_of(entity));
+        let written = hold(entity, count, record, &mut slots, &mut heaps.materials, &mut journal);
         journal.error(entity, Topic::Material, written.err());
+        let is_ignored = !material.opacity.is_opaque()
+            && object.as_ref().is_some_and(|object| object.sphere.is_some() || object.volume.is_some());
+        let warning =
+            object.filter(|_| is_ignored).map(|o| BakeWarning::IgnoredOpacity { entity: o.label() });
+        journal.warning(entity, Topic::Opacity, warning);
     }
 }
 
@@ -143,19 +114,20 @@ fn slots_needed(object: &ObjectItem, assets: &Assets) -> u32 {
 fn hold(
     entity: Entity,
     count: u32,
-    material: &Material,
+    record: MaterialRecord,
     slots: &mut MaterialSlots,
     store: &mut MaterialStore,
     journal: &mut Journal,
 ) -> Result<(), BakeError> {
-    let old = slots.0.get(&entity).copied().unwrap_or_default();
-    if old.count == count {
-        return (old.first..old.first + count).try_for_each(|slot| store.write(slot, material, journal));
+    let mut span = slots.0.get(&entity).copied().unwrap_or_default();
+    if span.count != count {
+        slots.0.remove(&entity);
+        store.release(span, journal);
+        span = store.reserve(count, journal)?;
+        if count > 0 {
+            slots.0.insert(entity, span);
+        }
     }
-    slots.0.remove(&entity);
-    store.release(old, journal);
-    if count > 0 {
-        slots.0.insert(entity, store.place(&vec![*material; count as usize], journal)?);
-    }
+    (span.first..span.first + span.count).for_each(|slot| store.write(slot, record, journal));
     Ok(())
 }

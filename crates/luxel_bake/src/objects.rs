@@ -8,7 +8,10 @@ use bevy_ecs::lifecycle::RemovedComponents;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use bevy_ecs::system::SystemParam;
-use luxel_scene::{Assets, GlobalTransform, Material, MeshInstance, Name, Sphere, StableId, VoxelVolume};
+use luxel_scene::{
+    Assets, DistantLight, GlobalTransform, Material, MaterialTextures, MeshInstance, MeshStructure, Name,
+    PointLight, SmoothNormals, Sphere, SpotLight, StableId, VoxelVolume,
+};
 
 use crate::BakeError;
 
@@ -28,6 +31,11 @@ pub(crate) struct Object {
     pub sphere: Option<&'static Sphere>,
     pub mesh: Option<&'static MeshInstance>,
     pub volume: Option<&'static VoxelVolume>,
+    pub textures: Option<&'static MaterialTextures>,
+    pub smooth: Option<&'static SmoothNormals>,
+    pub point_light: Option<&'static PointLight>,
+    pub spot_light: Option<&'static SpotLight>,
+    pub distant_light: Option<&'static DistantLight>,
 }
 
 impl ObjectItem<'_, '_> {
@@ -66,6 +74,11 @@ type AnythingChanged = Or<(
     Changed<Sphere>,
     Changed<MeshInstance>,
     Changed<VoxelVolume>,
+    Changed<MaterialTextures>,
+    Changed<SmoothNormals>,
+    Changed<PointLight>,
+    Changed<SpotLight>,
+    Changed<DistantLight>,
 )>;
 
 type ShowsAsset = Or<(With<MeshInstance>, With<VoxelVolume>)>;
@@ -80,6 +93,11 @@ pub(crate) struct Removals<'w, 's> {
     spheres: RemovedComponents<'w, 's, Sphere>,
     meshes: RemovedComponents<'w, 's, MeshInstance>,
     volumes: RemovedComponents<'w, 's, VoxelVolume>,
+    textures: RemovedComponents<'w, 's, MaterialTextures>,
+    smooth: RemovedComponents<'w, 's, SmoothNormals>,
+    point_lights: RemovedComponents<'w, 's, PointLight>,
+    spot_lights: RemovedComponents<'w, 's, SpotLight>,
+    distant_lights: RemovedComponents<'w, 's, DistantLight>,
 }
 
 impl Removals<'_, '_> {
@@ -91,19 +109,25 @@ impl Removals<'_, '_> {
             .chain(self.spheres.read())
             .chain(self.meshes.read())
             .chain(self.volumes.read())
+            .chain(self.textures.read())
+            .chain(self.smooth.read())
+            .chain(self.point_lights.read())
+            .chain(self.spot_lights.read())
+            .chain(self.distant_lights.read())
     }
 }
 
-/// Finds the touched entities. Other assets touch everything that shows one.
+/// Finds the touched entities. Other assets, or other structures over them, touch everything that shows one.
 pub(crate) fn find_touched(
     mut touched: ResMut<Touched>,
     changed: Query<Entity, AnythingChanged>,
     mut removed: Removals,
     assets: Res<Assets>,
+    structure: Res<MeshStructure>,
     asset_users: Query<Entity, ShowsAsset>,
 ) {
     let mut entities: EntityHashSet = changed.iter().chain(removed.entities()).collect();
-    if assets.is_changed() {
+    if assets.is_changed() || structure.is_changed() {
         entities.extend(&asset_users);
     }
     touched.0 = entities.into_iter().collect();

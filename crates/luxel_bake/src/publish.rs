@@ -2,15 +2,20 @@
 use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
-use luxel_flat::{FlatScene, Heap, SceneParams};
-use luxel_scene::{Environment, RenderSettings};
+use glam::Vec3;
+use luxel_flat::{
+    FlatScene, Heap, LIGHT_DISTANT, LIGHT_SAMPLING_BSDF, LIGHT_SAMPLING_MIS, LIGHT_SAMPLING_NEE, SceneParams,
+};
+use luxel_scene::{Environment, LightSampling, MeshStructure, RenderSettings};
 
 use crate::BakeError;
 use crate::camera::View;
 use crate::cloud::Cloud;
+use crate::environment::Surroundings;
 use crate::features::Features;
 use crate::instances::Instances;
 use crate::journal::Journal;
+use crate::mesh_options;
 use crate::store::Heaps;
 use crate::tlas::Tlas;
 
@@ -36,7 +41,9 @@ pub(crate) struct Parts<'w> {
     tlas: Res<'w, Tlas>,
     features: Res<'w, Features>,
     view: Res<'w, View>,
+    meshes: Res<'w, MeshStructure>,
     environment: Res<'w, Environment>,
+    surroundings: Res<'w, Surroundings>,
     settings: Res<'w, RenderSettings>,
 }
 
@@ -62,8 +69,10 @@ fn differs(new: &FlatScene, last: &FlatScene) -> bool {
     new.params != last.params
         || new.features != last.features
         || new.anchor != last.anchor
+        || heap(&new.tlas_nodes, &last.tlas_nodes, since)
         || heap(&new.bvh_nodes, &last.bvh_nodes, since)
         || heap(&new.instances, &last.instances, since)
+        || new.mesh_accel != last.mesh_accel
         || new.sphere_accel != last.sphere_accel
         || heap(&new.octree_nodes, &last.octree_nodes, since)
         || heap(&new.sphere_nodes, &last.sphere_nodes, since)
@@ -72,7 +81,13 @@ fn differs(new: &FlatScene, last: &FlatScene) -> bool {
         || heap(&new.triangles, &last.triangles, since)
         || heap(&new.svo_nodes, &last.svo_nodes, since)
         || heap(&new.materials, &last.materials, since)
-        || heap(&new.material_params, &last.material_params, since)
+        || heap(&new.triangle_attributes, &last.triangle_attributes, since)
+        || heap(&new.textures, &last.textures, since)
+        || heap(&new.texels, &last.texels, since)
+        || heap(&new.albedo_tables, &last.albedo_tables, since)
+        || heap(&new.lights, &last.lights, since)
+        || heap(&new.light_nodes, &last.light_nodes, since)
+        || heap(&new.environment, &last.environment, since)
 }
 
 impl Parts<'_> {
@@ -84,21 +99,29 @@ impl Parts<'_> {
     }
 
     fn snapshot(&self, revision: u64) -> Result<FlatScene, BakeError> {
-        let Heaps { bvh_nodes, triangles, svo_nodes, instances, materials } = &*self.heaps;
+        let heaps = &*self.heaps;
         let cloud = self.cloud.structure();
         Ok(FlatScene {
             params: self.params()?,
-            bvh_nodes: bvh_nodes.heap.clone(),
-            instances: instances.heap.clone(),
+            tlas_nodes: self.tlas.nodes().clone(),
+            bvh_nodes: heaps.bvh_nodes.heap.clone(),
+            mesh_accel: mesh_options::accel(&self.meshes),
+            instances: heaps.instances.heap.clone(),
             sphere_accel: cloud.options().accel,
             spheres: cloud.spheres().clone(),
             octree_nodes: cloud.octree_nodes().clone(),
             sphere_nodes: cloud.sphere_nodes().clone(),
             leaf_spheres: cloud.leaf_spheres().clone(),
-            triangles: triangles.heap.clone(),
-            svo_nodes: svo_nodes.heap.clone(),
-            materials: materials.records.heap.clone(),
-            material_params: materials.params.heap.clone(),
+            triangles: heaps.triangles.heap.clone(),
+            triangle_attributes: heaps.triangle_attributes.heap.clone(),
+            svo_nodes: heaps.svo_nodes.heap.clone(),
+            materials: heaps.materials.records.heap.clone(),
+            textures: heaps.textures.heap.clone(),
+            texels: heaps.texels.heap.clone(),
+            albedo_tables: heaps.albedo_tables.clone(),
+            lights: heaps.lights.clone(),
+            light_nodes: heaps.light_nodes.clone(),
+            environment: heaps.environment.clone(),
             features: self.features.set(),
             anchor: self.instances.anchor().to_array(),
             revision,
@@ -106,7 +129,8 @@ impl Parts<'_> {
     }
 
     fn params(&self) -> Result<SceneParams, BakeError> {
-        let RenderSettings { width, height, max_depth, roulette_depth, seed, .. } = *self.settings;
+        let RenderSettings { width, height, max_depth, roulette_depth, seed, light_sampling, .. } =
+            *self.settings;
         if width == 0 || height == 0 {
             return Err(BakeError::EmptyFilm { width, height });
         }
@@ -114,20 +138,46 @@ impl Parts<'_> {
         let (horizon, zenith, ground) = match *self.environment {
             Environment::Constant(radiance) => (radiance, radiance, radiance),
             Environment::Gradient { zenith, horizon, ground } => (horizon, zenith, ground),
+            Environment::Map { .. } => (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO),
         };
-        let tlas = self.tlas.nodes();
+        let lights = self.heaps.lights.as_slice();
         Ok(SceneParams {
             camera: view.record(self.instances.anchor(), width, height),
             sky: horizon.to_array(),
             sky_zenith: zenith.to_array(),
             sky_ground: ground.to_array(),
-            tlas_first: tlas.first,
-            tlas_count: tlas.count,
+            // On the GPU the TLAS stands behind the meshes' trees.
+            tlas_first: self.heaps.bvh_nodes.heap.len() as u32,
+            tlas_count: self.tlas.nodes().len() as u32,
             seed,
             // The scene counts scatterings, the tracers count surfaces.
             max_depth: max_depth.saturating_add(1),
             roulette_depth,
-            ..SceneParams::default()
+            light_count: lights.len() as u32,
+            distant_count: lights.iter().take_while(|light| light.kind == LIGHT_DISTANT).count() as u32,
+            light_node_count: self.heaps.light_nodes.len() as u32,
+            light_sampling: match light_sampling {
+                LightSampling::Mis => LIGHT_SAMPLING_MIS,
+                LightSampling::Nee => LIGHT_SAMPLING_NEE,
+                LightSampling::Bsdf => LIGHT_SAMPLING_BSDF,
+            },
+            ..self.environment_params()
         })
+    }
+
+    /// Where the environment map stands; zeros without one.
+    fn environment_params(&self) -> SceneParams {
+        let Environment::Map { rotation, strength, .. } = *self.environment else {
+            return SceneParams::default();
+        };
+        let Some([width, height]) = self.surroundings.size() else { return SceneParams::default() };
+        SceneParams {
+            environment_width: width,
+            environment_height: height,
+            environment_cos: rotation.cos() as f32,
+            environment_sin: rotation.sin() as f32,
+            environment_strength: strength,
+            ..SceneParams::default()
+        }
     }
 }

@@ -6,8 +6,10 @@ use luxel_scene::{MeshAsset, VolumeAsset};
 use serde::Serialize;
 
 use crate::assets::Built;
+use crate::attributes::Attributes;
 use crate::cloud::Cloud;
-use crate::journal::{BakeWarning, Complaints, Disabled};
+use crate::images::Images;
+use crate::journal::{BakeWarning, Complaints};
 use crate::materials::MaterialSlots;
 use crate::publish::Published;
 
@@ -32,6 +34,10 @@ pub struct BakeReport {
     pub meshes: Vec<MeshFacts>,
     /// Volumes in use.
     pub volumes: Vec<VolumeFacts>,
+    /// Images that textures show.
+    pub images: Vec<ImageFacts>,
+    /// Lights that can be sampled one by one.
+    pub lights: u64,
     /// Bytes of every heap, by name.
     pub bytes: Vec<(&'static str, u64)>,
     /// What is drawn otherwise than the scene says, one line each.
@@ -67,6 +73,19 @@ pub struct MeshFacts {
     pub nodes: u32,
     /// Deepest level of its BVH; the root is level 0.
     pub depth: u32,
+    /// Triangles whose normals were of no length or on the wrong side and were put right.
+    pub mended_normals: u32,
+}
+
+/// Facts about an image that textures show.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ImageFacts {
+    /// Asset id.
+    pub asset: u32,
+    /// Width and height of the image in pixels.
+    pub size: [u32; 2],
+    /// Width and height that it is shown at.
+    pub shown_size: [u32; 2],
 }
 
 /// Facts about a volume in use.
@@ -104,6 +123,8 @@ pub(crate) fn report(world: &World) -> BakeReport {
         sphere_cloud: sphere_facts(world, scene),
         meshes: meshes(world, scene),
         volumes: volumes(world),
+        images: images(world),
+        lights: u64::from(scene.params.light_count),
         bytes: bytes(scene),
         warnings,
     }
@@ -111,15 +132,14 @@ pub(crate) fn report(world: &World) -> BakeReport {
 
 /// The warnings in words: of each kind the first few, then how many more there are.
 fn told<'a>(warnings: impl Iterator<Item = &'a BakeWarning>) -> Vec<String> {
-    let mut kinds: Vec<(Option<Disabled>, Vec<&BakeWarning>)> = Vec::new();
+    let mut kinds: Vec<Vec<&BakeWarning>> = Vec::new();
     for warning in warnings {
-        let kind = warning.reason();
-        match kinds.iter_mut().find(|(other, _)| *other == kind) {
-            Some((_, alike)) => alike.push(warning),
-            None => kinds.push((kind, vec![warning])),
+        match kinds.iter_mut().find(|alike| alike.first().is_some_and(|first| first.is_like(warning))) {
+            Some(alike) => alike.push(warning),
+            None => kinds.push(vec![warning]),
         }
     }
-    let lines = kinds.into_iter().flat_map(|(_, alike)| {
+    let lines = kinds.into_iter().flat_map(|alike| {
         let more = alike.len().saturating_sub(WARNINGS_ALIKE);
         let rest = (more > 0).then(|| format!("and {more} more objects likewise"));
         alike.into_iter().take(WARNINGS_ALIKE).map(ToString::to_string).chain(rest)
@@ -129,13 +149,22 @@ fn told<'a>(warnings: impl Iterator<Item = &'a BakeWarning>) -> Vec<String> {
 
 fn meshes(world: &World, scene: &FlatScene) -> Vec<MeshFacts> {
     let Some(built) = world.get_resource::<Built<MeshAsset>>() else { return Vec::new() };
+    let attributes = world.get_resource::<Attributes>();
     (built.iter())
         .map(|(id, _, mesh)| MeshFacts {
             asset: id.0,
             triangles: mesh.triangles.count,
             nodes: mesh.nodes.count,
             depth: scene.bvh_nodes.as_slice().get(mesh.nodes.range()).map_or(0, luxel_accel::depth),
+            mended_normals: attributes.map_or(0, |attributes| attributes.mended(id)),
         })
+        .collect()
+}
+
+fn images(world: &World) -> Vec<ImageFacts> {
+    let images = world.get_resource::<Images>().into_iter().flat_map(Images::iter);
+    images
+        .map(|(id, image)| ImageFacts { asset: id.0, size: image.original_size(), shown_size: image.size() })
         .collect()
 }
 
@@ -172,6 +201,7 @@ fn sphere_facts(world: &World, scene: &FlatScene) -> SphereFacts {
 
 fn bytes(scene: &FlatScene) -> Vec<(&'static str, u64)> {
     [
+        ("tlas_nodes", scene.tlas_nodes.bytes()),
         ("bvh_nodes", scene.bvh_nodes.bytes()),
         ("instances", scene.instances.bytes()),
         ("octree_nodes", scene.octree_nodes.bytes()),
@@ -181,7 +211,13 @@ fn bytes(scene: &FlatScene) -> Vec<(&'static str, u64)> {
         ("triangles", scene.triangles.bytes()),
         ("svo_nodes", scene.svo_nodes.bytes()),
         ("materials", scene.materials.bytes()),
-        ("material_params", scene.material_params.bytes()),
+        ("triangle_attributes", scene.triangle_attributes.bytes()),
+        ("textures", scene.textures.bytes()),
+        ("texels", scene.texels.bytes()),
+        ("albedo_tables", scene.albedo_tables.bytes()),
+        ("lights", scene.lights.bytes()),
+        ("light_nodes", scene.light_nodes.bytes()),
+        ("environment", scene.environment.bytes()),
     ]
     .map(|(name, bytes)| (name, bytes as u64))
     .to_vec()
@@ -190,6 +226,7 @@ fn bytes(scene: &FlatScene) -> Vec<(&'static str, u64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Disabled;
 
     #[test]
     fn many_warnings_of_a_kind_are_counted() {

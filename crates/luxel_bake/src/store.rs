@@ -1,6 +1,8 @@
 //! The flat arrays that bake keeps, each with the allocator that hands out its ranges.
 use bevy_ecs::prelude::Resource;
-use luxel_flat::{BvhNode, Heap, Instance, Span, SvoNode, Triangle};
+use luxel_flat::{
+    BvhNode, Heap, Instance, LightNode, LightRecord, Span, SvoNode, TextureSlot, Triangle, TriangleAttributes,
+};
 
 use crate::materials::MaterialStore;
 use crate::{BakeError, SpanAllocator};
@@ -55,13 +57,20 @@ impl<T: Copy + Default + PartialEq> Store<T> {
     }
 }
 
-/// Every array of the flat scene but the sphere cloud's, which its octree owns.
+/// Every array of the flat scene but those of the sphere cloud and the TLAS, which own theirs.
 #[derive(Resource, Default)]
 pub(crate) struct Heaps {
-    /// The TLAS and one BVH per mesh.
+    /// One BVH per mesh.
     pub bvh_nodes: Store<BvhNode>,
     pub triangles: Store<Triangle>,
+    pub triangle_attributes: Store<TriangleAttributes>,
     pub svo_nodes: Store<SvoNode>,
     pub instances: Store<Instance>,
     pub materials: MaterialStore,
+    pub textures: Store<TextureSlot>,
+    pub texels: Store<u32>,
+    pub albedo_tables: Heap<f32>,
+    pub lights: Heap<LightRecord>,
+    pub light_nodes: Heap<LightNode>,
+    pub environment: Heap<[f32; 4]>,
 }

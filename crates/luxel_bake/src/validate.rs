@@ -1,7 +1,6 @@
 //! Every structure that bake keeps, checked by the rooms that built it.
 use bevy_ecs::prelude::World;
-use luxel_accel::{MeshBvh, Svo, validate_tlas};
-use luxel_flat::BvhNode;
+use luxel_accel::{Svo, validate_mesh, validate_tlas};
 use luxel_geom::Aabb;
 use luxel_scene::{MeshAsset, VolumeAsset};
 
@@ -19,20 +18,15 @@ pub(crate) fn validate(world: &World) -> Result<(), BakeError> {
         return Ok(());
     };
     cloud.structure().validate()?;
-    let nodes: &[BvhNode] = &heaps.bvh_nodes.heap.as_slice()[tlas.nodes().range()];
-    validate_tlas(nodes, &live_instances(heaps))?;
+    validate_tlas(tlas.nodes().as_slice(), &live_instances(heaps))?;
     validate_meshes(world, heaps)?;
     validate_volumes(world, heaps)
 }
 
 fn validate_meshes(world: &World, heaps: &Heaps) -> Result<(), BakeError> {
     for (_, _, mesh) in world.get_resource::<Built<MeshAsset>>().iter().flat_map(|built| built.iter()) {
-        let bvh = MeshBvh {
-            nodes: heaps.bvh_nodes.heap.as_slice()[mesh.nodes.range()].to_vec(),
-            triangles: heaps.triangles.heap.as_slice()[mesh.triangles.range()].to_vec(),
-            bounds: mesh.bounds,
-        };
-        bvh.validate()?;
+        let nodes = &heaps.bvh_nodes.heap.as_slice()[mesh.nodes.range()];
+        validate_mesh(nodes, &heaps.triangles.heap.as_slice()[mesh.triangles.range()])?;
     }
     Ok(())
 }

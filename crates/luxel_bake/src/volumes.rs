@@ -5,11 +5,12 @@ use glam::Vec3;
 use luxel_accel::{SvoVoxel, build_svo};
 use luxel_flat::Span;
 use luxel_geom::Aabb;
-use luxel_scene::{AssetId, Assets, Material, Surface, VolumeAsset};
+use luxel_scene::{AssetId, Assets, Material, MeshStructure, Surface, VolumeAsset};
 
 use crate::assets::BakedAsset;
 use crate::journal::{Journal, Topic};
 use crate::objects::ObjectItem;
+use crate::resample::srgb_encode;
 use crate::store::Heaps;
 use crate::{BakeCounters, BakeError};
 
@@ -30,6 +31,7 @@ impl BakedAsset for VolumeAsset {
     const KIND: &'static str = "volume";
     const TOPIC: Topic = Topic::Volume;
     type Built = BuiltVolume;
+    type Settings = ();
 
     fn shown_by(object: &ObjectItem) -> Option<AssetId> {
         object.volume.map(|instance| instance.volume)
@@ -39,14 +41,16 @@ impl BakedAsset for VolumeAsset {
         assets.volume(id)
     }
 
-    fn build(&self, heaps: &mut Heaps, journal: &mut Journal) -> Result<BuiltVolume, BakeError> {
+    fn settings(_: &MeshStructure) {}
+
+    fn build(&self, (): &(), heaps: &mut Heaps, journal: &mut Journal) -> Result<BuiltVolume, BakeError> {
         let (voxels, used) = voxels(self);
         let svo = build_svo(&voxels, self.grid.size)?;
         Ok(BuiltVolume {
             nodes: heaps.svo_nodes.place(&svo.nodes, journal.revision())?,
             levels: svo.levels,
             bounds: svo.bounds,
-            palette: heaps.materials.place(&self.grid.palette, journal)?,
+            palette: heaps.materials.place_palette(&self.grid.palette, journal)?,
             used,
         })
     }
@@ -80,15 +84,14 @@ fn voxels(volume: &VolumeAsset) -> (Vec<SvoVoxel>, Vec<u32>) {
 /// What averages of voxels are made of: the reflectance in 8-bit sRGB; glass counts as white.
 fn color(material: &Material) -> [u8; 3] {
     let reflectance = match material.surface {
-        Surface::Lambert { albedo } | Surface::Metal { albedo, .. } => albedo,
+        Surface::Lambert { albedo }
+        | Surface::Metal { albedo, .. }
+        | Surface::SemiSpecular { albedo, .. } => albedo,
+        Surface::Principled(principled) => principled.base_color,
+        Surface::Unlit { color } => color,
         Surface::Dielectric { .. } => Vec3::ONE,
     };
     reflectance.to_array().map(|linear| (srgb_encode(linear.clamp(0.0, 1.0)) * 255.0).round() as u8)
-}
-
-/// The transfer function of IEC 61966-2-1.
-fn srgb_encode(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]

@@ -5,11 +5,12 @@ mod common;
 use bevy_ecs::prelude::*;
 use common::{OneOfEach, Studio, visible};
 use glam::{DQuat, DVec3, Vec3};
+use luxel_bake::TextureBudget;
 use luxel_flat::FlatScene;
 use luxel_geom::rng;
 use luxel_scene::{
-    Material, MeshInstance, MeshSource, Sphere, SphereAccel, SphereCloud, Transform, Visibility,
-    VolumeSource, VoxelVolume, spawn,
+    AssetId, Material, MaterialTextures, MeshInstance, MeshSource, Opacity, Principled, SmoothNormals,
+    Sphere, SphereAccel, SphereCloud, TextureRef, Transform, Visibility, VolumeSource, VoxelVolume, spawn,
 };
 
 /// Random numbers of an edit, in [0, 1).
@@ -30,6 +31,7 @@ fn a_moved_world_is_the_same_world() {
             Transform { rotation: DQuat::from_rotation_y(0.7), ..Transform::at(DVec3::new(0.5, 1.25, -2.0)) },
         );
         studio.world.entity_mut(scene.cubes[0]).insert(ChildOf(group));
+        studio.world.entity_mut(scene.cubes[1]).insert(SmoothNormals { crease_angle: 2.0 });
         let cells = |x: f64| (x * 1024.0).round() / 1024.0;
         for i in 0..200 {
             let r = random(i);
@@ -54,8 +56,10 @@ fn a_moved_world_is_the_same_world() {
 /// Everything but the anchor, floats as text in full (−0 and 0 differ).
 fn bits(scene: &FlatScene) -> String {
     format!(
-        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
+        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
         scene.params,
+        (scene.triangle_attributes.as_slice(), scene.textures.as_slice(), scene.texels.as_slice()),
+        scene.tlas_nodes.as_slice(),
         scene.bvh_nodes.as_slice(),
         scene.instances.as_slice(),
         scene.octree_nodes.as_slice(),
@@ -64,7 +68,6 @@ fn bits(scene: &FlatScene) -> String {
         scene.triangles.as_slice(),
         scene.svo_nodes.as_slice(),
         scene.materials.as_slice(),
-        scene.material_params.as_slice(),
         scene.features,
     )
 }
@@ -107,8 +110,14 @@ fn assert_edited_equals_fresh(name: &str, cloud: SphereCloud) {
     let mut studio = Studio::empty();
     studio.world.insert_resource(cloud);
     OneOfEach::new(&mut studio);
-    let meshes = [MeshSource::Cube, MeshSource::Quad, MeshSource::Icosphere { subdivisions: 1 }]
-        .map(|s| studio.mesh_asset(s));
+    let meshes = [
+        studio.decorated_asset(MeshSource::Cube, |_| {}),
+        studio.mesh_asset(MeshSource::Quad),
+        studio.decorated_asset(MeshSource::Icosphere { subdivisions: 1 }, |mesh| {
+            mesh.normals = mesh.positions.iter().map(|p| p.normalize()).collect();
+        }),
+    ];
+    let images = [(8, 4, 255), (3, 5, 40), (16, 16, 255)].map(|(w, h, a)| studio.image_asset(w, h, a));
     let volumes = [VolumeSource::Menger { level: 1 }, VolumeSource::Lantern { size: 6 }]
         .map(|s| studio.volume_asset(s));
     studio.run();
@@ -118,7 +127,7 @@ fn assert_edited_equals_fresh(name: &str, cloud: SphereCloud) {
         let pick = |n: usize| (r[0] * n as f64) as usize;
         let at = DVec3::new(r[1], r[2], r[3]) * 20.0 - 10.0;
         let world = &mut studio.world;
-        let choice = (r[4] * 12.0) as u32;
+        let choice = (r[4] * 15.0) as u32;
         let old = (!objects.is_empty()).then(|| objects[pick(objects.len())]);
         match (choice, old) {
             (0..2, _) | (_, None) => {
@@ -150,6 +159,13 @@ fn assert_edited_equals_fresh(name: &str, cloud: SphereCloud) {
                     None => _ = world.entity_mut(old).remove::<ChildOf>(),
                 }
             }
+            (12, Some(old)) => _ = world.entity_mut(old).insert(textures(&images, r[5], r[6])),
+            (13, Some(old)) => {
+                let crease_angle = (r[5] * 4.0) as u32 as f32;
+                _ = world.entity_mut(old).insert(SmoothNormals { crease_angle })
+            }
+            (14, _) if r[5] < 0.5 => world.resource_mut::<TextureBudget>().bytes = (r[6] * 1500.0) as u64,
+            (14, Some(old)) => _ = world.entity_mut(old).remove::<(MaterialTextures, SmoothNormals)>(),
             (9, Some(old)) => _ = world.entity_mut(old).remove::<(Sphere, Material)>(),
             (_, Some(old)) => world.get_mut::<Transform>(old).unwrap().translation = at,
         }
@@ -163,9 +179,23 @@ fn assert_edited_equals_fresh(name: &str, cloud: SphereCloud) {
         _ = studio.world.try_despawn(object);
     }
     let lengths = |s: &FlatScene| {
-        [s.instances.len(), s.triangles.len(), s.svo_nodes.len(), s.materials.len(), s.material_params.len()]
+        [
+            s.instances.len(),
+            s.triangles.len(),
+            s.triangle_attributes.len(),
+            s.svo_nodes.len(),
+            s.materials.len(),
+            s.textures.len(),
+            s.texels.len(),
+        ]
     };
     assert_eq!(lengths(&studio.run()), lengths(&studio.fresh()), "everything is given back");
+}
+
+fn textures(images: &[AssetId; 3], x: f64, y: f64) -> MaterialTextures {
+    let pick = |x: f64| TextureRef::new(images[(x * 3.0) as usize]);
+    let normal = (y < 0.3).then(|| pick(y * 3.0));
+    MaterialTextures { color: Some(pick(x)), emission: Some(pick(y)), normal, ..MaterialTextures::default() }
 }
 
 fn is_below(world: &World, entity: Entity, ancestor: Entity) -> bool {
@@ -175,10 +205,12 @@ fn is_below(world: &World, entity: Entity, ancestor: Entity) -> bool {
 
 fn material(x: f64) -> Material {
     let color = Vec3::new(x as f32, 0.5, 0.25);
-    match (x * 4.0) as u32 {
+    match (x * 6.0) as u32 {
         0 => Material::lambert(color),
         1 => Material::metal(color, 0.1),
         2 => Material::dielectric(1.5),
+        3 => Material::principled(Principled { base_color: color, ..Principled::default() }),
+        4 => Material { opacity: Opacity::Blend { alpha: 0.5 }, ..Material::lambert(color) },
         _ => Material::lamp(color),
     }
 }

@@ -7,9 +7,9 @@ use common::{OneOfEach, Studio};
 use glam::{DQuat, DVec3, Vec3};
 use luxel_bake::SphereTuning;
 use luxel_scene::{
-    ActiveCamera, Camera, Environment, Material, MeshInstance, MeshSource, Name, RenderSettings, Sphere,
-    SphereAccel, SphereCloud, StableId, Surface, ToneMapping, Transform, Visibility, VolumeSource,
-    VoxelVolume, spawn,
+    ActiveCamera, Camera, Environment, LightSampling, Material, MeshInstance, MeshSource, Name, Projection,
+    RenderSettings, Sphere, SphereAccel, SphereCloud, StableId, Surface, ToneMapping, Transform, Visibility,
+    VolumeSource, VoxelVolume, spawn,
 };
 
 type Edit = Box<dyn Fn(&mut World)>;
@@ -63,8 +63,14 @@ fn every_field_changes_the_revision() {
             (what, field::<Material>(entity, |m| m.surface = Surface::Metal { albedo: Vec3::Z, fuzz: 0.0 })),
             (what, field::<Material>(entity, |m| m.surface = Surface::Metal { albedo: Vec3::Y, fuzz: 0.0 })),
             (what, field::<Material>(entity, |m| m.surface = Surface::Metal { albedo: Vec3::Y, fuzz: 0.5 })),
-            (what, field::<Material>(entity, |m| m.surface = Surface::Dielectric { ior: 1.5 })),
-            (what, field::<Material>(entity, |m| m.surface = Surface::Dielectric { ior: 1.6 })),
+            (
+                what,
+                field::<Material>(entity, |m| m.surface = Surface::Dielectric { ior: 1.5, schlick: false }),
+            ),
+            (
+                what,
+                field::<Material>(entity, |m| m.surface = Surface::Dielectric { ior: 1.6, schlick: false }),
+            ),
             (what, Box::new(move |world: &mut World| _ = world.entity_mut(entity).remove::<Material>())),
             (what, Box::new(move |world: &mut World| _ = world.entity_mut(entity).insert(ChildOf(camera)))),
             (what, Box::new(move |world: &mut World| _ = world.entity_mut(entity).remove::<ChildOf>())),
@@ -85,7 +91,7 @@ fn every_field_changes_the_revision() {
             Box::new(move |world: &mut World| world.get_mut::<VoxelVolume>(lantern).unwrap().volume = volume),
         ),
         ("eye", field::<Transform>(camera, |t| t.translation.y += 0.001)),
-        ("fov", field::<Camera>(camera, |c| c.vertical_fov = 1.0)),
+        ("fov", field::<Camera>(camera, |c| c.projection = Projection::Perspective { vertical_fov: 1.0 })),
         ("lens", field::<Camera>(camera, |c| c.lens_radius = 0.2)),
         ("focus", field::<Camera>(camera, |c| c.focus_distance = 4.0)),
         ("width", resource::<RenderSettings>(|s| s.width += 1)),
@@ -93,6 +99,13 @@ fn every_field_changes_the_revision() {
         ("max_depth", resource::<RenderSettings>(|s| s.max_depth += 1)),
         ("roulette_depth", resource::<RenderSettings>(|s| s.roulette_depth += 1)),
         ("seed", resource::<RenderSettings>(|s| s.seed += 1)),
+        ("next-event", resource::<RenderSettings>(|s| s.light_sampling = LightSampling::Nee)),
+        ("scattering", resource::<RenderSettings>(|s| s.light_sampling = LightSampling::Bsdf)),
+        (
+            "orthographic",
+            field::<Camera>(camera, |c| c.projection = Projection::Orthographic { height: 4.0 }),
+        ),
+        ("height", field::<Camera>(camera, |c| c.projection = Projection::Orthographic { height: 5.0 })),
         ("min_spheres", resource::<SphereCloud>(|c| c.min_spheres = 1)),
         ("max_depth", resource::<SphereCloud>(|c| c.max_depth = 3)),
         ("auto", resource::<SphereTuning>(|t| t.auto = luxel_flat::SphereAccel::Bvh)),
@@ -113,6 +126,11 @@ fn every_field_changes_the_revision() {
             }),
         ),
     ]);
+    assert_each_is_noticed(&mut studio, &edits);
+}
+
+/// Every edit restarts the picture, and comes to what a fresh bake comes to.
+fn assert_each_is_noticed(studio: &mut Studio, edits: &[(&str, Edit)]) {
     let mut last = studio.run();
     for (number, (what, edit)) in edits.iter().enumerate() {
         edit(&mut studio.world);

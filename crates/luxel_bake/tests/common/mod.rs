@@ -6,10 +6,13 @@ use std::sync::Arc;
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
 use luxel_bake::{BakeCounters, BakeError, Baker};
-use luxel_flat::{FlatScene, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS};
+use luxel_flat::{
+    FlatScene, INSTANCE_ATTRIBUTES, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, MaterialRecord,
+};
 use luxel_scene::{
-    ActiveCamera, AssetId, Assets, Camera, Material, MeshAsset, MeshInstance, MeshSource, Sphere, Transform,
-    VolumeAsset, VolumeSource, VoxelVolume, empty_world, spawn,
+    ActiveCamera, AssetId, Assets, Camera, DistantLight, ImageAsset, ImagePixels, ImageSource, Material,
+    MaterialTextures, MeshAsset, MeshInstance, MeshSource, PointLight, SmoothNormals, Sphere, SpotLight,
+    Transform, TriangleMesh, VolumeAsset, VolumeSource, VoxelVolume, empty_world, spawn,
 };
 
 /// A world and its baker.
@@ -35,6 +38,33 @@ impl Studio {
 
     pub fn volume_asset(&mut self, source: VolumeSource) -> AssetId {
         self.world.resource_mut::<Assets>().insert_volume(VolumeAsset::from_source(source).unwrap())
+    }
+
+    /// An image of 8-bit noise, opaque unless `alpha` is another number than 255.
+    pub fn image_asset(&mut self, width: u32, height: u32, alpha: u8) -> AssetId {
+        let noise = |i: u32| (i.wrapping_mul(0x9e37_79b9) >> 24) as u8;
+        let pixels = (0..width * height).map(|i| [noise(i), noise(i + 7), noise(i + 99), alpha]);
+        self.image(width, height, ImagePixels::Rgba8(pixels.collect()))
+    }
+
+    /// An image of radiance.
+    pub fn radiance_asset(&mut self, width: u32, height: u32) -> AssetId {
+        let pixels = (0..width * height).map(|i| [i as f32, 0.5, 2.0]);
+        self.image(width, height, ImagePixels::RgbF32(pixels.collect()))
+    }
+
+    fn image(&mut self, width: u32, height: u32, pixels: ImagePixels) -> AssetId {
+        let source = ImageSource::Checker { squares: 1, a: [0; 3], b: [0; 3] };
+        self.world.resource_mut::<Assets>().insert_image(ImageAsset { source, width, height, pixels })
+    }
+
+    /// A recipe's mesh with texture coordinates, made from x and y; what else it carries is up to `change`.
+    pub fn decorated_asset(&mut self, source: MeshSource, change: impl FnOnce(&mut TriangleMesh)) -> AssetId {
+        let mut asset = MeshAsset::from_source(source).unwrap();
+        let uvs = asset.mesh.positions.iter().map(|p| p.truncate() * 2.0).collect();
+        asset.mesh.uvs[0] = uvs;
+        change(&mut asset.mesh);
+        self.world.resource_mut::<Assets>().insert_mesh(asset)
     }
 
     pub fn sphere(&mut self, at: DVec3, radius: f64, material: Material) -> Entity {
@@ -79,6 +109,7 @@ fn copy_of(world: &mut World) -> World {
     copy.insert_resource(*world.resource::<luxel_scene::Environment>());
     copy.insert_resource(*world.resource::<luxel_scene::RenderSettings>());
     copy.insert_resource(*world.resource::<luxel_scene::SphereCloud>());
+    copy.insert_resource(*world.resource::<luxel_bake::TextureBudget>());
     let entities: Vec<Entity> =
         world.query_filtered::<Entity, With<luxel_scene::StableId>>().iter(world).collect();
     // Spawned in another order, so that entity numbers and slots differ.
@@ -98,7 +129,7 @@ fn copy_of(world: &mut World) -> World {
             Camera,
             ActiveCamera
         );
-        clone!(luxel_scene::Visibility);
+        clone!(luxel_scene::Visibility, MaterialTextures, SmoothNormals, PointLight, SpotLight, DistantLight);
         if let Some(parent) = old.get::<ChildOf>() {
             new.insert(ChildOf(twins[&parent.parent()]));
         }
@@ -115,6 +146,8 @@ pub fn visible(scene: &FlatScene) -> BTreeMap<String, String> {
     let mut params = scene.params;
     params.tlas_first = 0;
     seen.insert("params".into(), format!("{params:?} {:?} {:?}", scene.features, scene.anchor));
+    seen.insert("environment".into(), format!("{:?}", scene.environment.as_slice()));
+    seen.insert("albedo tables".into(), scene.albedo_tables.len().to_string());
     let reachable = scene
         .tlas()
         .iter()
@@ -144,7 +177,8 @@ fn describe(scene: &FlatScene, i: &Instance) -> String {
         KIND_MESH => {
             let triangles = &scene.triangles.as_slice()[range(i.primitive_first, i.primitive_count)];
             let nodes = &scene.bvh_nodes.as_slice()[nodes];
-            format!("{place} {nodes:?} {triangles:?} {}", material(scene, i.material_first))
+            let attributes = attributes(scene, i);
+            format!("{place} {nodes:?} {triangles:?} {attributes} {}", material(scene, i.material_first))
         }
         KIND_VOXELS => {
             let nodes = &scene.svo_nodes.as_slice()[nodes];
@@ -158,10 +192,27 @@ fn describe(scene: &FlatScene, i: &Instance) -> String {
     }
 }
 
+fn attributes(scene: &FlatScene, i: &Instance) -> String {
+    if i.flags & INSTANCE_ATTRIBUTES == 0 {
+        return i.flags.to_string();
+    }
+    let first = i.primitive_first.wrapping_add(i.attribute_offset) as usize;
+    let all = &scene.triangle_attributes.as_slice()[first..first + i.primitive_count as usize];
+    format!("{} {all:?}", i.flags)
+}
+
 fn material(scene: &FlatScene, slot: u32) -> String {
-    let m = scene.materials.as_slice()[slot as usize];
-    let params = &scene.material_params.as_slice()[m.param_first as usize..][..m.param_count as usize];
-    format!("{} {} {:?} {} {params:?}", m.kind, m.flags, m.color, m.scalar)
+    let record = scene.materials.as_slice()[slot as usize];
+    let textures: Vec<String> = (record.texture_first..)
+        .take(record.texture_mask.count_ones() as usize)
+        .map(|slot| {
+            let texture = scene.textures.as_slice()[slot as usize];
+            let count = (texture.size >> 16) * (texture.size & 0xffff);
+            let texels = &scene.texels.as_slice()[texture.texel_first as usize..][..count as usize];
+            format!("{:?} {texels:?}", luxel_flat::TextureSlot { texel_first: 0, ..texture })
+        })
+        .collect();
+    format!("{:?} {textures:?}", MaterialRecord { texture_first: 0, light_first: 0, ..record })
 }
 
 /// One of everything: two spheres, two instances of a cube, a lantern.
