@@ -1,13 +1,13 @@
-//! A walk through a binary tree of boxes, the nearer child first.
+//! Walks through a binary tree of boxes: the nearer child first, or in depth-first order by skip pointers.
 //!
-//! Both children of a node are tested at once. The farther one waits on a short stack with its entry and is passed
+//! The nearer child first: both children of a node are tested at once. The farther one waits on a short stack with its entry and is passed
 //! over if a hit was found before it. The stack is a small array, so that it costs next to nothing to have; should
 //! it be full, the farther subtree is walked at once by its skip pointers, which needs no stack: no depth can
 //! overflow, and only time depends on the order. A damaged tree neither panics nor loops forever: in a sound one every
 //! node has one parent and its box is tested at most once, so a walk that would test more boxes than there are nodes
 //! runs in a circle, and ends.
 use luxel_flat::{BvhNode, LEAF_COUNT_SHIFT};
-use luxel_geom::{PairRay, Real, SlabRay};
+use luxel_geom::{PairHit, PairRay, Real, SlabRay};
 
 use crate::traverse::node_box;
 
@@ -23,35 +23,78 @@ pub struct Walk {
     pub is_sound: bool,
 }
 
-/// Visits the leaves that a ray enters. `visit_leaf` gets a leaf's primitives (first and count) and returns up to
-/// where the ray is still searched: its `t_max` or the best hit's parameter.
+/// What is done at the leaves that a ray enters.
+///
+/// A trait and no closure: what stands at several places of a walk is inlined at the hot one by attribute only.
+pub trait Leaves<R: Real> {
+    /// Looks through a leaf's primitives. Returns up to where the ray is still searched: its `t_max` or the best hit's
+    /// parameter; less than its `t_min` ends the walk.
+    fn visit(&mut self, first: u32, count: u32) -> R;
+}
+
+impl<R: Real, F: FnMut(u32, u32) -> R> Leaves<R> for F {
+    #[inline(always)]
+    fn visit(&mut self, first: u32, count: u32) -> R {
+        self(first, count)
+    }
+}
+
+/// True if a ray enters the root's box.
 #[inline(always)]
-pub fn walk<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>, visit_leaf: impl FnMut(u32, u32) -> R) -> Walk {
-    Walker::<R, _, STACK_SIZE>::new(nodes, ray, visit_leaf).run()
+pub fn enters_root<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>) -> bool {
+    nodes.first().is_some_and(|root| is_entered(root, ray))
+}
+
+/// Visits the leaves that a ray enters, the nearer first. The ray enters the root's box.
+#[inline(always)]
+pub fn walk<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>, leaves: impl Leaves<R>) -> Walk {
+    Walker::<R, _, STACK_SIZE>::new(nodes, ray, leaves).run()
+}
+
+/// Visits the leaves that a ray enters in depth-first order, by skip pointers (escape indices) alone: without a stack, but
+/// blind to which child is nearer (seed 2, 2.6.3). The ray enters the root's box.
+#[inline(always)]
+pub fn walk_by_skips<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>, mut leaves: impl Leaves<R>) -> Walk {
+    if nodes.is_empty() {
+        return Walk::ROOT_MISSED;
+    }
+    follow_skips(nodes, *ray, Walk { node_count: 1, is_sound: true }, &mut leaves, 0).1
+}
+
+impl Walk {
+    /// Of a ray that does not enter the root's box.
+    pub const ROOT_MISSED: Self = Self { node_count: 1, is_sound: true };
+
+    /// As if all primitives were in one leaf and its box everywhere: exhaustive search.
+    #[inline(always)]
+    pub fn over_one_leaf<R: Real>(count: u32, mut leaves: impl Leaves<R>) -> Self {
+        leaves.visit(0, count);
+        Self { node_count: 0, is_sound: true }
+    }
 }
 
 /// The state of a walk.
-struct Walker<'a, R: Real, F, const SIZE: usize> {
+struct Walker<'a, R: Real, L, const SIZE: usize> {
     nodes: &'a [BvhNode],
     ray: SlabRay<R>,
-    visit_leaf: F,
+    leaves: L,
     walk: Walk,
     /// `BvhNode::leaf` of a node, and where the ray enters it.
     stack: [(u32, R); SIZE],
     waiting: usize,
 }
 
-impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, SIZE> {
+impl<'a, R: Real, L: Leaves<R>, const SIZE: usize> Walker<'a, R, L, SIZE> {
     #[inline(always)]
-    fn new(nodes: &'a [BvhNode], ray: &SlabRay<R>, visit_leaf: F) -> Self {
-        let walk = Walk { node_count: 0, is_sound: true };
-        Self { nodes, ray: *ray, visit_leaf, walk, stack: [(0, R::ZERO); SIZE], waiting: 0 }
+    fn new(nodes: &'a [BvhNode], ray: &SlabRay<R>, leaves: L) -> Self {
+        let walk = Walk { node_count: 1, is_sound: true };
+        Self { nodes, ray: *ray, leaves, walk, stack: [(0, R::ZERO); SIZE], waiting: 0 }
     }
 
     #[inline(always)]
     fn run(mut self) -> Walk {
         let pair_ray = PairRay::new(&self.ray);
-        let mut next = self.enter_root();
+        let mut next = self.nodes.first().map(|root| root.leaf);
         while let Some(content) = next {
             next = if content >> LEAF_COUNT_SHIFT == 0 {
                 self.enter(&pair_ray, content)
@@ -59,22 +102,11 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
                 self.visit(content);
                 None
             };
-            next = next.or_else(|| self.pop());
+            if next.is_none() {
+                next = self.pop();
+            }
         }
         self.walk
-    }
-
-    /// Tests the root: `BvhNode::leaf` of it, if the ray enters it.
-    #[inline(always)]
-    fn enter_root(&mut self) -> Option<u32> {
-        let root = self.nodes.first()?;
-        self.walk.node_count += 1;
-        self.is_entered(root).then_some(root.leaf)
-    }
-
-    #[inline(always)]
-    fn is_entered(&self, node: &BvhNode) -> bool {
-        node_box(node).interval(&self.ray).overlaps(self.ray.t_min, self.ray.t_max)
     }
 
     /// True if more boxes may be tested; else the tree is damaged.
@@ -100,28 +132,30 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
             return None;
         };
         self.walk.node_count += 2;
-        let hit = pair_ray.test([a.lo, b.lo], [a.hi, b.hi], self.ray.t_max);
-        match hit.is_hit {
-            [true, true] if hit.enter[1] < hit.enter[0] => {
-                self.push(first, hit.enter[0]);
-                Some(b.leaf)
-            }
-            [true, true] => {
-                self.push(first + 1, hit.enter[1]);
-                Some(a.leaf)
-            }
-            [true, false] => Some(a.leaf),
-            [false, true] => Some(b.leaf),
-            [false, false] => None,
+        let ([a_lo, a_hi], [b_lo, b_hi]) = (rows(a), rows(b));
+        let PairHit { enter, hits } = pair_ray.test([a_lo, b_lo], [a_hi, b_hi], self.ray.t_max);
+        // Branches, no selection: a branch that was foreseen lets the next node be read before this one is tested.
+        if hits == 0b11 {
+            return Some(if enter[1] < enter[0] {
+                self.push(first, a.leaf, enter[0]);
+                b.leaf
+            } else {
+                self.push(first + 1, b.leaf, enter[1]);
+                a.leaf
+            });
         }
+        if hits & 0b01 != 0 {
+            return Some(a.leaf);
+        }
+        (hits != 0).then_some(b.leaf)
     }
 
     /// Lets a node wait; if there is no room, walks its subtree at once.
     #[inline(always)]
-    fn push(&mut self, node: usize, enter: R) {
+    fn push(&mut self, node: usize, content: u32, enter: R) {
         match self.stack.get_mut(self.waiting) {
             Some(place) => {
-                *place = (self.nodes[node].leaf, enter);
+                *place = (content, enter);
                 self.waiting += 1;
             }
             None => self.walk_by_skips(node),
@@ -144,32 +178,81 @@ impl<'a, R: Real, F: FnMut(u32, u32) -> R, const SIZE: usize> Walker<'a, R, F, S
     #[inline(always)]
     fn visit(&mut self, leaf: u32) {
         let (first, count) = BvhNode { leaf, ..BvhNode::default() }.primitives();
-        self.ray.t_max = (self.visit_leaf)(first, count);
+        self.ray.t_max = self.leaves.visit(first, count);
+        if self.ray.t_max < self.ray.t_min {
+            self.waiting = 0;
+        }
     }
 
-    /// Walks the subtree of a node whose box was tested, without the stack.
-    #[cold]
+    /// Walks a subtree that does not fit onto the stack.
+    #[inline(always)]
     fn walk_by_skips(&mut self, root: usize) {
-        let BvhNode { leaf, skip: end, .. } = self.nodes[root];
-        if self.nodes[root].is_leaf() {
-            return self.visit(leaf);
+        (self.ray.t_max, self.walk) = aside(self.nodes, self.ray, self.walk, &mut self.leaves, root);
+        if !self.walk.is_sound || self.ray.t_max < self.ray.t_min {
+            self.waiting = 0;
         }
-        let mut index = leaf;
-        while index != end {
-            let Some(node) = self.nodes.get(index as usize).filter(|_| self.may_go_on()) else {
-                return self.give_up();
-            };
-            self.walk.node_count += 1;
-            index = node.skip;
-            if self.is_entered(node) {
-                if node.is_leaf() {
-                    self.visit(node.leaf);
-                } else {
-                    index = node.first_child();
-                }
+    }
+}
+
+/// [`follow_skips`] out of the way of what happens more often. What a walk needs is passed by value, so that it need not
+/// stand in memory meanwhile.
+#[cold]
+#[inline(never)]
+fn aside<R: Real>(
+    nodes: &[BvhNode],
+    ray: SlabRay<R>,
+    walk: Walk,
+    leaves: &mut impl Leaves<R>,
+    root: usize,
+) -> (R, Walk) {
+    follow_skips(nodes, ray, walk, leaves, root)
+}
+
+/// Walks the subtree of a node whose box was tested, without a stack. Returns up to where the ray is still searched.
+#[inline(always)]
+fn follow_skips<R: Real>(
+    nodes: &[BvhNode],
+    mut ray: SlabRay<R>,
+    mut walk: Walk,
+    leaves: &mut impl Leaves<R>,
+    root: usize,
+) -> (R, Walk) {
+    let BvhNode { leaf, skip: end, .. } = nodes[root];
+    if nodes[root].is_leaf() {
+        let (first, count) = nodes[root].primitives();
+        return (leaves.visit(first, count), walk);
+    }
+    let mut index = leaf;
+    while index != end && ray.t_max >= ray.t_min {
+        let may_go_on = walk.node_count < nodes.len() as u64;
+        let Some(node) = nodes.get(index as usize).filter(|_| may_go_on) else {
+            walk.is_sound = false;
+            break;
+        };
+        walk.node_count += 1;
+        index = node.skip;
+        if is_entered(node, &ray) {
+            if node.is_leaf() {
+                let (first, count) = node.primitives();
+                ray.t_max = leaves.visit(first, count);
+            } else {
+                index = node.first_child();
             }
         }
     }
+    (ray.t_max, walk)
+}
+
+#[inline(always)]
+fn is_entered<R: Real>(node: &BvhNode, ray: &SlabRay<R>) -> bool {
+    node_box(node).interval(ray).overlaps(ray.t_min, ray.t_max)
+}
+
+/// The corners of a node's box, each with the link behind it: as a node is read.
+#[inline(always)]
+fn rows(node: &BvhNode) -> [[f32; 4]; 2] {
+    let BvhNode { lo, skip, hi, leaf } = *node;
+    [[lo[0], lo[1], lo[2], f32::from_bits(skip)], [hi[0], hi[1], hi[2], f32::from_bits(leaf)]]
 }
 
 #[cfg(test)]
@@ -188,7 +271,10 @@ mod tests {
             entries.extend(first..first + count);
             slab_ray.t_max
         };
-        let walk = Walker::<f32, _, SIZE>::new(nodes, &slab_ray, visit_leaf).run();
+        let walk = match enters_root(nodes, &slab_ray) {
+            true => Walker::<f32, _, SIZE>::new(nodes, &slab_ray, visit_leaf).run(),
+            false => Walk::ROOT_MISSED,
+        };
         entries.sort_unstable();
         (entries, walk)
     }

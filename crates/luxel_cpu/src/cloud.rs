@@ -1,4 +1,4 @@
-//! Closest hit in the sphere cloud, by the structure that the scene has over it.
+//! Hits in the sphere cloud, by the structure that the scene has over it.
 //!
 //! Every structure but [`SphereAccel::OctreeSeed`] gives the hit that [`SphereAccel::Naive`] gives, bit for bit; but
 //! [`SphereAccel::OctreeBase`] may take a ray that grazes a silhouette for a hit or a miss otherwise, if it starts
@@ -10,27 +10,22 @@ mod naive;
 mod octree;
 mod walk;
 
-use luxel_flat::{Counter, Counters, FlatScene, Instance, LeafSphere, SphereAccel, SphereRecord};
+use luxel_flat::{Counter, Counters, LeafSphere, SphereAccel, SphereRecord};
 use luxel_geom::{Real, SlabRay, Vector, sphere};
 
 use crate::Exclusion;
 use crate::hit::PrimitiveHit;
+use crate::query::{Query, Search};
 pub use walk::octant;
 
-/// The closest sphere along a ray in the cloud's space.
-pub fn intersect<R: Real>(
-    scene: &FlatScene,
-    instance: &Instance,
-    ray: &SlabRay<R>,
-    exclusion: &Exclusion,
-    counters: &mut Counters,
-) -> Option<PrimitiveHit<R>> {
-    match scene.sphere_accel {
-        SphereAccel::Naive => naive::intersect(scene, instance, ray, exclusion, counters),
-        SphereAccel::OctreeBase => cells::intersect_base(scene, instance, ray, exclusion, counters),
-        SphereAccel::OctreeSeed => cells::intersect_seed(scene, instance, ray, exclusion, counters),
-        SphereAccel::Octree => octree::intersect(scene, instance, ray, exclusion, counters),
-        SphereAccel::Bvh => bvh::intersect(scene, instance, ray, exclusion, counters),
+/// The wanted sphere along a ray in the cloud's space.
+pub fn intersect<R: Real>(query: &Query<'_, R>, counters: &mut Counters) -> Option<PrimitiveHit<R>> {
+    match query.scene.sphere_accel {
+        SphereAccel::Naive => naive::intersect(query, counters),
+        SphereAccel::OctreeBase => cells::intersect_base(query, counters),
+        SphereAccel::OctreeSeed => cells::intersect_seed(query, counters),
+        SphereAccel::Octree => octree::intersect(query, counters),
+        SphereAccel::Bvh => bvh::intersect(query, counters),
     }
 }
 
@@ -58,34 +53,17 @@ pub fn intersect_leaf_sphere<R: Real>(
     Some(PrimitiveHit { t, uv: [R::ZERO; 2], slot, primitive: stable_id, material })
 }
 
-/// The closest sphere of those that were tested so far.
-struct Closest<R: Real> {
-    /// The ray up to the best hit.
-    ray: SlabRay<R>,
-    exclusion: Exclusion,
-    best: Option<PrimitiveHit<R>>,
-}
-
-impl<R: Real> Closest<R> {
-    fn new(ray: &SlabRay<R>, exclusion: &Exclusion) -> Self {
-        Self { ray: *ray, exclusion: *exclusion, best: None }
-    }
-
+impl<R: Real> Search<R> {
     /// Tests one more sphere.
     #[inline]
-    fn test(&mut self, record: &LeafSphere, counters: &mut Counters) {
+    fn test_sphere(&mut self, record: &LeafSphere, counters: &mut Counters) {
         counters[Counter::SphereTests] += 1;
-        self.offer(record);
+        self.offer_sphere(record);
     }
 
     /// Tests one more sphere that is counted elsewhere.
     #[inline]
-    fn offer(&mut self, record: &LeafSphere) {
-        if let Some(hit) = intersect_leaf_sphere(record, &self.ray, &self.exclusion)
-            && hit.precedes(&self.best)
-        {
-            self.ray.t_max = hit.t;
-            self.best = Some(hit);
-        }
+    fn offer_sphere(&mut self, record: &LeafSphere) {
+        self.offer(intersect_leaf_sphere(record, &self.ray, &self.exclusion));
     }
 }

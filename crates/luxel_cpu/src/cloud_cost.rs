@@ -11,7 +11,7 @@ use glam::Vec3;
 use luxel_flat::{Counter, Counters, FlatScene, Instance, KIND_SPHERES, SphereAccel};
 use luxel_geom::{Ray, SlabRay, rng};
 
-use crate::{Exclusion, camera, cloud, instance};
+use crate::{Query, camera, cloud, instance};
 
 /// Cost of a visited node in nanoseconds of one core (AMD EPYC; clouds of 10 to 10,000 spheres gave 7 to 10, larger
 /// ones more as they leave the caches).
@@ -53,7 +53,7 @@ pub fn measure(scene: &FlatScene) -> CloudCost {
         counters[Counter::SphereTests] = live as u64 * entering as u64;
     } else {
         for object_ray in rays.iter().filter_map(|ray| enter(cloud, ray)) {
-            cloud::intersect(scene, cloud, &object_ray, &Exclusion::NOTHING, &mut counters);
+            cloud::intersect(&Query::new(scene, cloud, object_ray), &mut counters);
         }
     }
     weigh(rays.len() as u32, &counters)

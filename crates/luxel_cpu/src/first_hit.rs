@@ -1,16 +1,15 @@
 //! First-hit outputs: albedo and normal as sums over samples, the rest from the pixel's first sample.
-use luxel_flat::{Aov, Counter, Counters, FlatScene};
+use luxel_flat::{Aov, Counter, Counters};
 use luxel_geom::{Ray, Real, Vector};
 
 use crate::surface::Surface;
-use crate::{Hit, bsdf, shade};
+use crate::{Hit, bsdf};
 
 /// Adds what a camera ray met to its pixel's record. `steps` is what its traversal took.
 pub fn record<R: Real>(
-    scene: &FlatScene,
     ray: &Ray<R>,
     sample: u32,
-    hit: Option<&Hit<R>>,
+    hit: Option<(&Hit<R>, &Surface<R>)>,
     steps: u32,
     aov: &mut Aov,
     counters: &mut Counters,
@@ -19,15 +18,14 @@ pub fn record<R: Real>(
     if sample == 0 {
         *aov = Aov { steps, ..Aov::default() };
     }
-    let Some(hit) = hit else { return };
-    let surface = Surface::at(scene, ray, hit);
-    let normal = shade::facing(&surface, ray.direction).normal;
-    let albedo = bsdf::albedo::<R>(&scene.materials.as_slice()[hit.on.material as usize]);
+    let Some((hit, surface)) = hit else { return };
+    let normal = surface.facing(ray.direction).normal;
+    let albedo = bsdf::albedo(&surface.bsdf);
     aov.albedo = add(aov.albedo, albedo.to_vec3());
     aov.normal = add(aov.normal, normal.to_vec3());
     if sample == 0 {
         aov.depth = hit.on.t.to_f32();
-        aov.position = surface.point.to_vec3().to_array();
+        aov.position = surface.place.point.to_vec3().to_array();
         aov.instance = hit.instance_id + 1;
         aov.primitive = hit.on.primitive;
     }

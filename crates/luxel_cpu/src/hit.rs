@@ -49,7 +49,7 @@ impl<R: Real> Hit<R> {
     }
 }
 
-/// The primitive that a ray starts on.
+/// What a ray does not meet: the primitive that it starts on, and what its coins let it pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exclusion {
     /// Slot of its instance, or `NONE`.
@@ -58,16 +58,18 @@ pub struct Exclusion {
     pub primitive: u32,
     /// How the ray leaves it.
     pub how: Exclude,
+    /// Decides which see-through surfaces the ray passes (`alpha`): a hash of pixel, sample and bounce.
+    pub coins: u32,
 }
 
 impl Exclusion {
     /// The ray starts in free space.
-    pub const NOTHING: Self = Self { instance: NONE, primitive: NONE, how: Exclude::Nothing };
+    pub const NOTHING: Self = Self { instance: NONE, primitive: NONE, how: Exclude::Nothing, coins: 0 };
 
     /// This exclusion as seen from inside an instance.
     #[inline]
     pub fn within(&self, instance: u32) -> Self {
-        if self.instance == instance { *self } else { Self::NOTHING }
+        if self.instance == instance { *self } else { Self { coins: self.coins, ..Self::NOTHING } }
     }
 
     /// What to exclude when testing a primitive.

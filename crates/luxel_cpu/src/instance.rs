@@ -3,9 +3,10 @@ use luxel_flat::{Counters, FlatScene, Instance, KIND_MESH, KIND_SPHERES};
 use luxel_geom::{Aabb, Affine, Interval, Ray, Real, SlabRay, Vector};
 
 use crate::hit::PrimitiveHit;
+use crate::query::{Query, Wanted};
 use crate::{Exclusion, Hit, cloud, mesh, volume};
 
-/// The closest hit on an instance that is not beyond `limit`.
+/// The wanted hit on an instance that is not beyond `limit`.
 #[inline]
 pub fn intersect<R: Real>(
     scene: &FlatScene,
@@ -13,6 +14,7 @@ pub fn intersect<R: Real>(
     ray: &SlabRay<R>,
     limit: R,
     exclusion: &Exclusion,
+    wanted: Wanted,
     counters: &mut Counters,
 ) -> Option<Hit<R>> {
     let instance = &scene.instances.as_slice()[slot as usize];
@@ -21,11 +23,11 @@ pub fn intersect<R: Real>(
         return None;
     }
     let object_ray = object_ray(instance, ray, t_max_in_object(&interval, limit, ray.t_max));
-    let exclusion = exclusion.within(slot);
+    let query = Query { scene, instance, ray: object_ray, exclusion: exclusion.within(slot), wanted };
     let on = match instance.kind {
-        KIND_SPHERES => cloud::intersect(scene, instance, &object_ray, &exclusion, counters),
-        KIND_MESH => mesh::intersect(scene, instance, &object_ray, &exclusion, counters),
-        _ => volume::intersect(scene, instance, &object_ray, &exclusion, counters),
+        KIND_SPHERES => cloud::intersect(&query, counters),
+        KIND_MESH => mesh::intersect(&query, counters),
+        _ => volume::intersect(&query, counters),
     }?;
     finish(slot, instance, on, &interval, ray)
 }

@@ -9,6 +9,7 @@
 //!
 //! ▪ Invariant: [`traverse::intersect`] returns what [`naive::Naive::intersect`] returns, bit for bit, whatever the
 //! shape of the structures (see `luxel_geom::aabb` for why it can).
+pub mod alpha;
 pub mod bsdf;
 pub mod bvh;
 pub mod camera;
@@ -17,12 +18,16 @@ pub mod cloud_cost;
 pub mod first_hit;
 pub mod hit;
 pub mod instance;
+pub mod lights;
+pub mod medium;
 pub mod mesh;
 pub mod naive;
 pub mod path;
+pub mod query;
 pub mod shade;
 pub mod sky;
 pub mod surface;
+pub mod texture;
 pub mod tracer;
 
 pub mod traverse;
@@ -30,4 +35,5 @@ pub mod volume;
 
 pub use hit::{Exclusion, Hit};
 pub use path::PathState;
+pub use query::{Query, Wanted};
 pub use tracer::CpuTracer;

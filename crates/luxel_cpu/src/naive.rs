@@ -2,9 +2,11 @@
 //!
 //! Shares the primitive tests and the tie-break with [`crate::traverse`], and nothing else, so equality of the
 //! two, bit for bit, speaks for the structures and their traversal.
-use luxel_flat::{FlatScene, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SvoNode};
+use luxel_flat::{Counters, FlatScene, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SvoNode};
+use luxel_geom::triangle::TriangleRay;
 use luxel_geom::{Ray, Real, SlabRay};
 
+use crate::alpha::passes_alpha;
 use crate::hit::PrimitiveHit;
 use crate::{Exclusion, Hit, cloud, instance, mesh, volume};
 
@@ -66,10 +68,14 @@ impl<'a> Naive<'a> {
                 first(live.filter_map(|(slot, s)| cloud::intersect_sphere(s, slot as u32, ray, exclusion)))
             }
             KIND_MESH => {
+                let triangle_ray = TriangleRay::new(ray);
                 let slots = instance.primitive_first..instance.primitive_first + instance.primitive_count;
                 first(slots.filter_map(|slot| {
                     let record = &self.scene.triangles.as_slice()[slot as usize];
-                    mesh::intersect_triangle(record, slot, instance, ray, exclusion)
+                    let hit =
+                        mesh::intersect_triangle(record, slot, instance, ray, &triangle_ray, exclusion)?;
+                    let counters = &mut Counters::default();
+                    (!passes_alpha(self.scene, instance, &hit, exclusion.coins, counters)).then_some(hit)
                 }))
             }
             _ => {

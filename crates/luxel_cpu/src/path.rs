@@ -1,4 +1,5 @@
 //! The state of a path between two bounces.
+use luxel_flat::NONE;
 use luxel_geom::{Ray, Real, Vector};
 
 use crate::Exclusion;
@@ -16,6 +17,13 @@ pub struct PathState<R: Real> {
     pub radiance: R::Vec3,
     /// Product of the squared relative indices of refraction: what the roulette leaves out of the throughput.
     pub eta_scale: R,
+    /// Density per solid angle with which the ray's direction was scattered; 0 if no light could have been sampled
+    /// instead: camera rays, mirrors, smooth glass.
+    pub pdf: R,
+    /// Unit normal of the surface that the ray left: what the light tree weighed.
+    pub normal: R::Vec3,
+    /// Material slot of the medium that the ray runs in, or `NONE`.
+    pub medium: u32,
     /// Surfaces met so far.
     pub bounce: u32,
     /// Pixel index, `y · width + x`.
@@ -35,6 +43,9 @@ impl<R: Real> PathState<R> {
             throughput: R::Vec3::splat(R::ONE),
             radiance: R::Vec3::splat(R::ZERO),
             eta_scale: R::ONE,
+            pdf: R::ZERO,
+            normal: R::Vec3::splat(R::ZERO),
+            medium: NONE,
             bounce: 0,
             pixel,
             sample,

@@ -1,79 +1,161 @@
-//! What happens at the end of a ray: light is gathered, and the path goes on or ends.
-use luxel_flat::{
-    Counter, Counters, Feature, FeatureSet, FlatScene, MATERIAL_EMISSIVE, MaterialRecord, SceneParams,
-};
-use luxel_geom::{Exclude, Ray, Real, Vector, rng};
+//! What happens at the end of a ray: light is gathered, lights are sampled, and the path goes on or ends.
+use luxel_flat::{Counter, Counters, Feature, FeatureSet, FlatScene, MATERIAL_UNLIT, SceneParams};
+use luxel_geom::{Ray, Real, Vector, rng};
 
+use crate::alpha::ray_coins;
 use crate::bsdf::{self, BsdfSample, Geometry};
+use crate::lights::{self, LightSample, Receiver, shadow};
+use crate::medium::{medium_beyond, medium_transmittance};
 use crate::surface::Surface;
 use crate::{Exclusion, Hit, PathState, sky};
 
-/// Shades the end of the path's current ray.
+/// Shades the end of the path's current ray: nothing, or a hit and its surface.
 ///
 /// A path may meet `max_depth` surfaces; it gathers the emission of each and the sky if it escapes before. So
-/// in a closed box of albedo ρ and emission L the picture is L (1 + ρ + … + ρ^(max_depth − 1)).
+/// in a closed box of albedo ρ and emission L the picture is L (1 + ρ + … + ρ^(max_depth − 1)). What a light sample at
+/// a surface finds stands for what scattering finds at the next one, so the last surface takes none.
 pub fn shade<R: Real>(
     scene: &FlatScene,
     features: FeatureSet,
     path: &mut PathState<R>,
-    hit: Option<&Hit<R>>,
+    end: Option<(&Hit<R>, &Surface<R>)>,
     counters: &mut Counters,
 ) {
-    let Some(hit) = hit else {
-        let sky = sky::radiance::<R>(&scene.params, features, path.ray.direction, counters);
-        path.radiance = path.radiance + path.throughput * sky;
+    let distance = end.map_or(R::FAR, |(hit, _)| hit.on.t);
+    let transmittance = medium_transmittance(scene, features, path.medium, distance, counters);
+    path.throughput = path.throughput * transmittance;
+    let Some((hit, surface)) = end else {
+        let light = sky::gather(scene, features, path.ray.direction, path.pdf, counters);
+        path.radiance = path.radiance + path.throughput * light;
         path.alive = false;
         return;
     };
-    let material = &scene.materials.as_slice()[hit.on.material as usize];
-    if features.has(Feature::Emission) && material.flags & MATERIAL_EMISSIVE != 0 {
-        counters[Counter::EmissionHits] += 1;
-        path.radiance = path.radiance + path.throughput * emitted_radiance::<R>(scene, material);
-    }
+    gather_emission(scene, features, path, hit, surface, counters);
     path.bounce += 1;
     path.alive = path.bounce < scene.params.max_depth
-        && scatter(scene, path, hit, material, counters)
+        && go_on(scene, features, path, hit, surface, counters)
         && (!features.has(Feature::Roulette) || survive_roulette(&scene.params, path, counters));
 }
 
-/// Radiance that a surface sends out, the same in every direction and on both sides.
-fn emitted_radiance<R: Real>(scene: &FlatScene, material: &MaterialRecord) -> R::Vec3 {
-    let [r, g, b, _] = scene.material_params.as_slice()[material.param_first as usize];
-    R::Vec3::from_array([r, g, b])
+/// Adds what the surface sends out, weighted against light sampling.
+fn gather_emission<R: Real>(
+    scene: &FlatScene,
+    features: FeatureSet,
+    path: &mut PathState<R>,
+    hit: &Hit<R>,
+    surface: &Surface<R>,
+    counters: &mut Counters,
+) {
+    if surface.bsdf.kind == MATERIAL_UNLIT {
+        path.radiance = path.radiance + path.throughput * surface.bsdf.color;
+    }
+    if surface.emission.max_element() <= R::ZERO {
+        return;
+    }
+    let mut weight = R::ONE;
+    if features.has(Feature::AreaLights) && path.pdf > R::ZERO {
+        let receiver = Receiver { point: path.ray.origin, normal: path.normal };
+        let offset = path.ray.direction * hit.on.t;
+        let sampled = lights::light_pdf(scene, features, surface.light, &receiver, offset, counters);
+        weight = lights::found_weight(scene, path.pdf, sampled);
+    }
+    path.radiance = path.radiance + path.throughput * surface.emission * weight;
+}
+
+/// Samples a light and the next direction; false if the path's light is absorbed.
+fn go_on<R: Real>(
+    scene: &FlatScene,
+    features: FeatureSet,
+    path: &mut PathState<R>,
+    hit: &Hit<R>,
+    surface: &Surface<R>,
+    counters: &mut Counters,
+) -> bool {
+    let geometry = surface.facing(path.ray.direction);
+    if features.has(Feature::Lights) && !bsdf::is_delta(&surface.bsdf) {
+        let block = rng::bounce_block(path.bounce - 1) + 1;
+        let u = rng::uniform4::<R>(path.pixel, path.sample, block, scene.params.seed);
+        let receiver =
+            Receiver { point: surface.place.spawn_origin(geometry.wo), normal: surface.shading_normal };
+        if let Some(light) = lights::sample_light(scene, features, &receiver, u, counters) {
+            gather_light(scene, features, path, (hit, surface, &geometry), &light, counters);
+        }
+    }
+    scatter(scene, features, path, (hit, surface, &geometry), counters)
+}
+
+/// A surface that is shaded: the hit, the surface and how it is seen.
+type Shaded<'a, R> = (&'a Hit<R>, &'a Surface<R>, &'a Geometry<R>);
+
+/// Adds what a sampled light sends along the path, if it is visible.
+fn gather_light<R: Real>(
+    scene: &FlatScene,
+    features: FeatureSet,
+    path: &mut PathState<R>,
+    (hit, surface, geometry): Shaded<R>,
+    light: &LightSample<R>,
+    counters: &mut Counters,
+) {
+    let value = bsdf::evaluate(&surface.bsdf, geometry, light.wi, scene.albedo_tables.as_slice());
+    let weight = lights::sampled_weight(scene, light, value.pdf) / light.pdf;
+    let radiance = path.throughput * value.f_cos * light.radiance * weight;
+    if radiance.max_element() <= R::ZERO
+        || !shadow::is_visible(scene, hit, surface, light, coins_of(scene, path), counters)
+    {
+        return;
+    }
+    let medium = medium_towards(scene, features, path.medium, surface, geometry, light.wi);
+    let transmittance = medium_transmittance::<R>(scene, features, medium, light.distance, counters);
+    path.radiance = path.radiance + radiance * transmittance;
 }
 
 /// Sends the path on in a scattered direction; false if its light is absorbed.
 fn scatter<R: Real>(
     scene: &FlatScene,
+    features: FeatureSet,
     path: &mut PathState<R>,
-    hit: &Hit<R>,
-    material: &MaterialRecord,
+    (hit, surface, geometry): Shaded<R>,
     counters: &mut Counters,
 ) -> bool {
-    let surface = Surface::at(scene, &path.ray, hit);
-    let geometry = facing(&surface, path.ray.direction);
+    let tables = scene.albedo_tables.as_slice();
     let block = rng::bounce_block(path.bounce - 1);
     let [u0, u1, u2, _] = rng::uniform4::<R>(path.pixel, path.sample, block, scene.params.seed);
-    let Some(BsdfSample { wi, weight, eta_scale }) =
-        bsdf::sample(material, &geometry, [u0, u1, u2], counters)
+    let Some(BsdfSample { wi, weight, pdf, eta_scale }) =
+        bsdf::sample(&surface.bsdf, geometry, [u0, u1, u2], tables, counters)
     else {
         return false;
     };
     counters[Counter::ScatteredRays] += 1;
     path.throughput = path.throughput * weight;
     path.eta_scale *= eta_scale;
-    path.ray = Ray::new(surface.spawn_origin(wi), wi);
-    let how = if wi.dot(surface.normal) > R::ZERO { Exclude::Leaving } else { Exclude::Entering };
-    path.exclusion = Exclusion { instance: hit.instance, primitive: hit.on.slot, how };
+    path.medium = medium_towards(scene, features, path.medium, surface, geometry, wi);
+    path.ray = Ray::new(surface.place.spawn_origin(wi), wi);
+    path.pdf = pdf;
+    path.normal = surface.shading_normal;
+    let how = shadow::exclude_towards(surface, wi);
+    path.exclusion =
+        Exclusion { instance: hit.instance, primitive: hit.on.slot, how, coins: coins_of(scene, path) };
     true
 }
 
-/// The surface as seen against a ray.
-pub fn facing<R: Real>(surface: &Surface<R>, direction: R::Vec3) -> Geometry<R> {
-    let wo = -direction;
-    let front = wo.dot(surface.normal) >= R::ZERO;
-    let normal = if front { surface.normal } else { -surface.normal };
-    Geometry { wo, normal, front }
+/// The coins of the rays that leave the surface that was just met.
+fn coins_of<R: Real>(scene: &FlatScene, path: &PathState<R>) -> u32 {
+    ray_coins(scene.params.seed, path.pixel, path.sample, path.bounce)
+}
+
+/// The medium that a ray which leaves a surface runs in.
+fn medium_towards<R: Real>(
+    scene: &FlatScene,
+    features: FeatureSet,
+    medium: u32,
+    surface: &Surface<R>,
+    geometry: &Geometry<R>,
+    wi: R::Vec3,
+) -> u32 {
+    if wi.dot(geometry.geometric) >= R::ZERO {
+        return medium;
+    }
+    medium_beyond(scene, features, medium, surface.material, geometry.front)
 }
 
 /// Russian roulette (pbrt-v4 §13.4.2): a dim path ends with probability `1 − brightness`; the others carry its

@@ -1,75 +1,131 @@
-//! From a hit to the point and normal that shading works with, with the point's error bound.
-use luxel_flat::{FlatScene, Instance, KIND_MESH, KIND_SPHERES};
-use luxel_geom::{Affine, Ray, Real, Vector, spawn, sphere, triangle, voxel};
+//! From a hit to the surface that shading works with: its place, its frame, and its material with textures applied.
+//!
+//! Twin of the kernel `surface`, which writes one `luxel_flat::SurfacePoint` per path.
+use luxel_flat::{
+    Counter, Counters, Feature, FeatureSet, FlatScene, Instance, KIND_MESH, MATERIAL_EMISSIVE,
+    MaterialRecord, NONE, TEXTURE_ROLE_NORMAL, TriangleAttributes,
+};
+use luxel_geom::{Affine, Ray, Real, Vector};
 
-use crate::{Hit, mesh, volume};
+use crate::Hit;
+use crate::bsdf::{Bsdf, Geometry};
+use attributes::vertex_attributes;
 
-/// A point on a surface, in tracer space.
+pub mod attributes;
+mod normal;
+mod place;
+pub mod roles;
+
+pub use place::Place;
+
+/// The surface at the end of a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface<R: Real> {
-    /// The point.
-    pub point: R::Vec3,
-    /// Bound on the error of each component of `point`, the way back into the object's space included.
-    pub error: R::Vec3,
-    /// Unit geometric normal, outwards.
-    pub normal: R::Vec3,
-}
-
-/// A point and normal in the object's space, before the transform.
-struct Local<R: Real> {
-    point: R::Vec3,
-    error: R::Vec3,
-    normal: R::Vec3,
+    /// Where it is.
+    pub place: Place<R>,
+    /// Unit normal that the material is shaded with, on the side of the geometric one.
+    pub shading_normal: R::Vec3,
+    /// How it scatters light.
+    pub bsdf: Bsdf<R>,
+    /// Radiance that it emits, on both sides.
+    pub emission: R::Vec3,
+    /// Its light in the table of lights, or `NONE`.
+    pub light: u32,
+    /// Material slot.
+    pub material: u32,
 }
 
 impl<R: Real> Surface<R> {
     /// The surface at a hit of a ray given in tracer space.
-    pub fn at(scene: &FlatScene, ray: &Ray<R>, hit: &Hit<R>) -> Self {
+    pub fn at(
+        scene: &FlatScene,
+        features: FeatureSet,
+        ray: &Ray<R>,
+        hit: &Hit<R>,
+        counters: &mut Counters,
+    ) -> Self {
         let instance = &scene.instances.as_slice()[hit.instance as usize];
-        let object_from_world = Affine::<R>::from_rows(&instance.object_from_world);
-        let point = object_from_world.point(ray.origin) + object_from_world.vector(ray.direction) * hit.on.t;
-        let local = match instance.kind {
-            KIND_SPHERES => sphere_surface(scene, hit, point),
-            KIND_MESH => triangle_surface(scene, hit),
-            _ => voxel_surface(instance, hit, point),
+        let material = &scene.materials.as_slice()[hit.on.material as usize];
+        let place = Place::at(scene, ray, hit);
+        let mut surface = Self {
+            place,
+            shading_normal: place.normal,
+            bsdf: Bsdf::of(material),
+            emission: emitted_radiance::<R>(features, material, counters),
+            light: light(instance, hit, material),
+            material: hit.on.material,
         };
-        Self::from_local(instance, &object_from_world, &local)
+        if features.has(Feature::Attributes)
+            && let Some(record) = attributes::record(scene, instance, hit.on.slot)
+        {
+            counters[Counter::AttributeReads] += 1;
+            let on = OnTriangle { scene, features, instance, material, record, hit };
+            surface.dress(&on, ray.direction, counters);
+        }
+        surface
     }
 
-    fn from_local(instance: &Instance, object_from_world: &Affine<R>, local: &Local<R>) -> Self {
-        let world_from_object = Affine::<R>::from_rows(&instance.world_from_object);
-        let point = world_from_object.point(local.point);
-        // What the next ray loses when it is brought into this object's space again.
-        let return_error = object_from_world.point_error(point, R::Vec3::splat(R::ZERO));
-        Self {
-            point,
-            error: world_from_object.point_error(local.point, local.error + return_error),
-            normal: object_from_world.normal_by_transpose(local.normal).normalized(),
+    /// Puts on what the corners of the triangle carry.
+    fn dress(&mut self, on: &OnTriangle<R>, direction: R::Vec3, counters: &mut Counters) {
+        let attributes = vertex_attributes(on.record, on.instance, on.hit.on.uv);
+        let [red, green, blue, _] = attributes.color;
+        self.bsdf.color = self.bsdf.color * R::Vec3::new(red, green, blue);
+        if on.features.has(Feature::Textures) {
+            let targets = (&mut self.bsdf, &mut self.emission);
+            roles::apply_textures(on.scene, on.material, &attributes.uv, targets, counters);
+        }
+        let mut normal = self.place.normal;
+        if let Some(smooth) = attributes.normal {
+            let object_from_world = Affine::<R>::from_rows(&on.instance.object_from_world);
+            normal = normal::smooth_normal(smooth, &object_from_world, normal);
+        }
+        let slot = roles::slot(on.scene, on.material, TEXTURE_ROLE_NORMAL)
+            .filter(|_| on.features.has(Feature::NormalMaps));
+        if let Some(slot) = slot {
+            let at = (on.hit.on.slot, on.hit.on.uv);
+            normal = normal::apply_normal_map(on.scene, on.instance, slot, at, normal, counters);
+        }
+        if attributes.normal.is_some() || slot.is_some() {
+            self.shading_normal = normal::kept_valid::<R>(normal, self.place.normal, direction);
         }
     }
 
-    /// The start point of a ray that leaves in a direction.
-    pub fn spawn_origin(&self, direction: R::Vec3) -> R::Vec3 {
-        spawn::offset_origin::<R>(self.point, self.error, self.normal, direction)
+    /// The surface as seen against a ray.
+    pub fn facing(&self, direction: R::Vec3) -> Geometry<R> {
+        let wo = -direction;
+        let front = wo.dot(self.place.normal) >= R::ZERO;
+        let side = if front { R::ONE } else { -R::ONE };
+        Geometry { wo, normal: self.shading_normal * side, geometric: self.place.normal * side, front }
     }
 }
 
-fn sphere_surface<R: Real>(scene: &FlatScene, hit: &Hit<R>, point: R::Vec3) -> Local<R> {
-    let record = &scene.spheres.as_slice()[hit.on.slot as usize];
-    let (center, radius) = (R::Vec3::from_array(record.center), R::from_f32(record.radius));
-    let (point, normal) = sphere::surface(point, center, radius);
-    Local { point, error: sphere::point_error(center, radius), normal }
+/// A hit on a triangle that has attributes.
+struct OnTriangle<'a, R: Real> {
+    scene: &'a FlatScene,
+    features: FeatureSet,
+    instance: &'a Instance,
+    material: &'a MaterialRecord,
+    record: &'a TriangleAttributes,
+    hit: &'a Hit<R>,
 }
 
-fn triangle_surface<R: Real>(scene: &FlatScene, hit: &Hit<R>) -> Local<R> {
-    let vertices = mesh::vertices::<R>(&scene.triangles.as_slice()[hit.on.slot as usize]);
-    let (point, error) = triangle::point(&vertices, hit.on.uv[0], hit.on.uv[1]);
-    Local { point, error, normal: triangle::area_normal::<R>(&vertices) }
+/// Radiance that a surface sends out, the same in every direction and on both sides; textures come later.
+fn emitted_radiance<R: Real>(
+    features: FeatureSet,
+    material: &MaterialRecord,
+    counters: &mut Counters,
+) -> R::Vec3 {
+    if !features.has(Feature::Emission) || material.flags & MATERIAL_EMISSIVE == 0 {
+        return R::Vec3::splat(R::ZERO);
+    }
+    counters[Counter::EmissionHits] += 1;
+    R::Vec3::from_array(material.emission)
 }
 
-fn voxel_surface<R: Real>(instance: &Instance, hit: &Hit<R>, point: R::Vec3) -> Local<R> {
-    let face = hit.on.uv[0].to_f32() as u32;
-    let cell = volume::voxel_cell(hit.on.primitive, instance.levels, point.axis(2).to_f32());
-    let (point, error) = voxel::surface::<R>(point, cell, face);
-    Local { point, error, normal: voxel::normal::<R>(face) }
+/// The light that a surface is in the table of lights: those of an entity's primitives stand in slot order.
+fn light<R: Real>(instance: &Instance, hit: &Hit<R>, material: &MaterialRecord) -> u32 {
+    if material.light_first == NONE || instance.kind != KIND_MESH {
+        return material.light_first;
+    }
+    material.light_first.wrapping_add(hit.on.slot.wrapping_sub(instance.primitive_first))
 }

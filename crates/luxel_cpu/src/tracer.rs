@@ -14,6 +14,7 @@ use luxel_flat::{Aov, Counter, Counters, Feature, FeatureSet, FilmPixel, FlatSce
 use luxel_geom::Vector;
 use rayon::prelude::*;
 
+use crate::surface::Surface;
 use crate::{PathState, camera, first_hit, shade, traverse};
 
 /// Slices shorter than this grow: a slice ends with threads waiting for the last one.
@@ -60,6 +61,7 @@ impl Tracer for CpuTracer {
             device: format!("{threads} threads"),
             driver: String::new(),
             threads,
+            max_array_bytes: None,
         }
     }
 
@@ -200,11 +202,14 @@ impl Context<'_> {
         while path.alive {
             let before = aov.is_some().then(|| counters.clone());
             let hit = traverse::intersect(self.scene, &path.ray, &path.exclusion, counters);
-            if let (Some(aov), Some(before)) = (aov.take(), before) {
-                let steps = first_hit::steps(&before, counters);
-                first_hit::record(self.scene, &path.ray, self.sample, hit.as_ref(), steps, aov, counters);
+            let steps = before.map(|before| first_hit::steps(&before, counters));
+            let surface =
+                hit.as_ref().map(|hit| Surface::at(self.scene, self.features, &path.ray, hit, counters));
+            let end = hit.as_ref().zip(surface.as_ref());
+            if let (Some(aov), Some(steps)) = (aov.take(), steps) {
+                first_hit::record(&path.ray, self.sample, end, steps, aov, counters);
             }
-            shade::shade(self.scene, self.features, &mut path, hit.as_ref(), counters);
+            shade::shade(self.scene, self.features, &mut path, end, counters);
         }
         path.radiance.to_vec3()
     }

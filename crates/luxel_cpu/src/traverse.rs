@@ -1,4 +1,4 @@
-//! Closest hit in the scene: the TLAS by skip pointers.
+//! Hits in the scene, the closest or any: the TLAS by skip pointers.
 //!
 //! No stack, so no depth can overflow one: a missed node is left by its `skip`, everything else is visited in
 //! depth-first order. A node is passed over only if its entry lies beyond the best hit so far. In a sound tree a walk
@@ -6,6 +6,7 @@
 use luxel_flat::{BvhNode, Counter, Counters, FlatScene};
 use luxel_geom::{Aabb, Ray, Real, SlabRay, Vector};
 
+use crate::query::Wanted;
 use crate::{Exclusion, Hit, instance};
 
 /// The closest hit with `t_min < t <= t_max`; ties by stable ids. An invalid ray hits nothing.
@@ -13,6 +14,26 @@ pub fn intersect<R: Real>(
     scene: &FlatScene,
     ray: &Ray<R>,
     exclusion: &Exclusion,
+    counters: &mut Counters,
+) -> Option<Hit<R>> {
+    search(scene, ray, exclusion, Wanted::Closest, counters)
+}
+
+/// True if there is any hit with `t_min < t <= t_max`: where [`intersect`] finds one. Ends at the first.
+pub fn occluded<R: Real>(
+    scene: &FlatScene,
+    ray: &Ray<R>,
+    exclusion: &Exclusion,
+    counters: &mut Counters,
+) -> bool {
+    search(scene, ray, exclusion, Wanted::Any, counters).is_some()
+}
+
+fn search<R: Real>(
+    scene: &FlatScene,
+    ray: &Ray<R>,
+    exclusion: &Exclusion,
+    wanted: Wanted,
     counters: &mut Counters,
 ) -> Option<Hit<R>> {
     if !ray.is_valid() {
@@ -34,9 +55,10 @@ pub fn intersect<R: Real>(
             continue;
         }
         let slot = node.primitives().0;
-        let hit = instance::intersect(scene, slot, &slab_ray, limit, exclusion, counters);
+        let hit = instance::intersect(scene, slot, &slab_ray, limit, exclusion, wanted, counters);
         best = hit.filter(|hit| hit.precedes(&best)).or(best);
-        index = node.skip as usize;
+        let is_over = wanted == Wanted::Any && best.is_some();
+        index = if is_over { nodes.len() } else { node.skip as usize };
     }
     counters[Counter::TlasNodes] += node_count as u64;
     counters[Counter::TraversalCaps] += u64::from(index < nodes.len());

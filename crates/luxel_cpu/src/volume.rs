@@ -1,29 +1,24 @@
-//! Closest hit in a voxel volume: its sparse octree, front to back by the ray's octant.
+//! Hits in a voxel volume: its sparse octree, front to back by the ray's octant.
 //!
 //! Boxes come from integer cells, so that a node's box contains its children's exactly. The stack holds one
 //! node per level; which sibling is next follows from the cell's low bits.
-use luxel_flat::{Counter, Counters, FlatScene, Instance, MAX_SVO_DEPTH, SvoNode};
+use luxel_flat::{Counter, Counters, Instance, MAX_SVO_DEPTH, SvoNode};
 use luxel_geom::{Real, SlabRay, voxel};
 
 use crate::Exclusion;
 use crate::cloud::octant;
 use crate::hit::PrimitiveHit;
+use crate::query::{Query, Search};
 
-/// The closest voxel along a ray in the volume's space.
-pub fn intersect<R: Real>(
-    scene: &FlatScene,
-    instance: &Instance,
-    ray: &SlabRay<R>,
-    exclusion: &Exclusion,
-    counters: &mut Counters,
-) -> Option<PrimitiveHit<R>> {
-    let nodes = &scene.svo_nodes.as_slice()[instance.node_first as usize..];
-    let octant = octant(ray);
-    let mut ray = *ray;
-    let mut best: Option<PrimitiveHit<R>> = None;
+/// The wanted voxel along a ray in the volume's space.
+pub fn intersect<R: Real>(query: &Query<'_, R>, counters: &mut Counters) -> Option<PrimitiveHit<R>> {
+    let instance = query.instance;
+    let nodes = &query.scene.svo_nodes.as_slice()[instance.node_first as usize..];
+    let octant = octant(&query.ray);
+    let mut search = Search::new(query);
     let mut stack = [0u32; MAX_SVO_DEPTH as usize + 1];
     let (mut depth, mut cell, mut rank) = (0u32, [0u32; 3], 0);
-    if instance.node_count == 0 || !enters(cell, 1 << instance.levels, &ray, counters) {
+    if instance.node_count == 0 || !enters(cell, 1 << instance.levels, &search.ray, counters) {
         return None;
     }
     loop {
@@ -31,21 +26,19 @@ pub fn intersect<R: Real>(
         if node.child_mask == 0 {
             counters[Counter::VoxelTests] += 1;
             let slot = instance.node_first + stack[depth as usize];
-            if let Some(hit) = intersect_voxel(node, slot, cell, instance, &ray, exclusion)
-                && hit.precedes(&best)
-            {
-                ray.t_max = hit.t;
-                best = Some(hit);
+            search.offer(intersect_voxel(node, slot, cell, instance, &search.ray, &search.exclusion));
+            if search.is_over() {
+                return search.best;
             }
         }
         let child_edge = (1 << (instance.levels - depth)) / 2;
-        if let Some(child) = next_child(node, cell, child_edge, rank, octant, &ray, counters) {
+        if let Some(child) = next_child(node, cell, child_edge, rank, octant, &search.ray, counters) {
             depth += 1;
             stack[depth as usize] = child_node(node, child);
             cell = child_cell(cell, child);
             rank = 0;
         } else if depth == 0 {
-            return best;
+            return search.best;
         } else {
             let child = cell[0] & 1 | (cell[1] & 1) << 1 | (cell[2] & 1) << 2;
             rank = (child ^ octant) + 1;

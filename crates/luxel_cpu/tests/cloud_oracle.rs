@@ -320,7 +320,7 @@ fn every_exclusion_equals_naive() {
     let exclusion = |i: usize| {
         let how = [Exclude::Nothing, Exclude::Leaving, Exclude::Entering][i % 3];
         let first = trace(&scenes[0], &all[i]).map_or(0, |hit| hit.on.slot);
-        Exclusion { instance: 0, primitive: first, how }
+        Exclusion { instance: 0, primitive: first, how, ..Exclusion::NOTHING }
     };
     assert!(assert_scenes_equal_naive(&scenes, &all, exclusion) > 4000);
 }

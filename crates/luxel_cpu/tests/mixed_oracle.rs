@@ -6,7 +6,7 @@ mod common;
 use common::{SceneBuilder, assert_equals_naive, differences, mesh_scene, sphere_scene, trace};
 use glam::{DAffine3, DMat3, DQuat, DVec3, UVec3, Vec3};
 use luxel_accel::{RootCell, SvoVoxel, build_svo, build_tlas};
-use luxel_cpu::surface::Surface;
+use luxel_cpu::surface::Place;
 use luxel_cpu::{Exclusion, Hit};
 use luxel_flat::{BvhNode, FlatScene, Instance};
 use luxel_geom::{Aabb, Ray, Vector};
@@ -83,7 +83,7 @@ fn the_shape_of_the_tlas_changes_nothing() {
     };
     let (nodes, rest) = (moved(&nodes, 2, 2), moved(&rest, 1 + nodes.len() as u32, end));
     let by_hand = [&[root, nodes[0], rest[0]], &nodes[1..], &rest[1..]].concat();
-    other.bvh_nodes.write(scene.params.tlas_first as usize, &by_hand, 2);
+    other.tlas_nodes.write(0, &by_hand, 2);
     for ray in rays::random(5, 5000, 4.0) {
         assert_eq!(trace(&scene, &ray), trace(&other, &ray));
     }
@@ -109,7 +109,7 @@ fn negative_control_a_shrunken_box_is_found_out() {
 
     let scene = mixed(2).build();
     let mut damaged = scene.clone();
-    damaged.bvh_nodes.get_mut(damaged.params.tlas_first as usize, 2).lo[2] += 2.0;
+    damaged.tlas_nodes.get_mut(0, 2).lo[2] += 2.0;
     assert_eq!(found(&scene), 0);
     assert!(found(&damaged) > 0);
 }
@@ -125,8 +125,8 @@ fn negative_control_a_skipped_subtree_is_found_out() {
     assert!(found(&mesh) > 0);
 
     let mut scene = mixed(2).build();
-    let (root, end) = (scene.params.tlas_first as usize, scene.params.tlas_count);
-    scene.bvh_nodes.get_mut(root + 1, 2).skip = end;
+    let end = scene.params.tlas_count;
+    scene.tlas_nodes.get_mut(1, 2).skip = end;
     assert!(found(&scene) > 0);
 }
 
@@ -152,8 +152,8 @@ fn agree(
     let exact_ray = Ray::new(ray.origin.as_dvec3(), ray.direction.as_dvec3());
     match (a, b) {
         (Some(a), Some(b)) if a.on.primitive == b.on.primitive => {
-            let normal: Vec3 = Surface::at(instanced, ray, &a).normal;
-            let exact: DVec3 = Surface::at(baked, &exact_ray, &b).normal;
+            let normal: Vec3 = Place::at(instanced, ray, &a).normal;
+            let exact: DVec3 = Place::at(baked, &exact_ray, &b).normal;
             // Mirroring turns the winding of the baked mesh, not the instance's sides.
             assert!(normal.as_dvec3().dot(exact).abs() > 1.0 - 1e-5, "{normal} {exact}");
             let cosine = exact.dot(exact_ray.direction).abs();

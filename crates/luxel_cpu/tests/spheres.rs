@@ -16,7 +16,7 @@ mod common;
 use common::clouds::{EXACT, cloud_scene};
 use common::{bits, trace};
 use glam::{DVec3, Vec3};
-use luxel_cpu::surface::Surface;
+use luxel_cpu::surface::Place;
 use luxel_cpu::{Exclusion, Hit, traverse};
 use luxel_flat::{Counters, FlatScene, SphereRecord};
 use luxel_geom::{Exclude, Ray, Real, SlabRay, Vector, sphere};
@@ -149,7 +149,7 @@ fn s04_tangent_rays() {
 
 /// The hit of a ray that starts on sphere 0.
 fn trace_from(scenes: &[FlatScene; 4], ray: &Ray<f32>, how: Exclude) -> Option<Hit<f32>> {
-    trace_all(scenes, ray, &Exclusion { instance: 0, primitive: 0, how })
+    trace_all(scenes, ray, &Exclusion { instance: 0, primitive: 0, how, ..Exclusion::NOTHING })
 }
 
 #[test]
@@ -161,7 +161,7 @@ fn s05_rays_that_start_on_the_surface() {
         let origin = center + 3.0 * radius * random.direction();
         let ray: Ray<f32> = Ray::new(origin, center + 0.6 * radius * random.direction() - origin);
         let hit = trace_all(&scenes, &ray, &Exclusion::NOTHING).unwrap();
-        let surface: Surface<f32> = Surface::at(&scenes[0], &ray, &hit);
+        let surface: Place<f32> = Place::at(&scenes[0], &ray, &hit);
         let direction = random.direction();
         let cosine = surface.normal.dot(direction);
         let outward = direction * cosine.signum();
@@ -200,12 +200,13 @@ fn reflections<R: Real>(scene: &FlatScene, mut ray: Ray<R>) -> Vec<(u32, DVec3)>
     while met.len() < 64
         && let Some(hit) = traverse::intersect(scene, &ray, &exclusion, &mut Counters::default())
     {
-        let surface: Surface<R> = Surface::at(scene, &ray, &hit);
+        let surface: Place<R> = Place::at(scene, &ray, &hit);
         met.push((hit.on.slot, DVec3::from([0, 1, 2].map(|axis| surface.point.axis(axis).to_f64()))));
         let along = R::from_f64(2.0) * surface.normal.dot(ray.direction);
         let direction = ray.direction + surface.normal * -along;
         ray = Ray::new(surface.spawn_origin(direction), direction);
-        exclusion = Exclusion { instance: 0, primitive: hit.on.slot, how: Exclude::Leaving };
+        exclusion =
+            Exclusion { instance: 0, primitive: hit.on.slot, how: Exclude::Leaving, ..Exclusion::NOTHING };
     }
     met
 }
@@ -246,7 +247,7 @@ fn s07_normals_come_from_the_hit_point() {
         let ray: Ray<f32> = Ray::new(random.point(5.0), random.direction());
         let Some(hit) = trace_all(&scenes, &ray, &Exclusion::NOTHING) else { continue };
         hits += 1;
-        let surface: Surface<f32> = Surface::at(&scenes[0], &ray, &hit);
+        let surface: Place<f32> = Place::at(&scenes[0], &ray, &hit);
         let record = all[hit.on.slot as usize];
         let n = surface.normal.as_dvec3();
         assert!((n.length() - 1.0).abs() <= 4.0 * UNIT_ROUNDOFF);

@@ -47,6 +47,8 @@ pub struct BackendFacts {
     pub driver: String,
     /// Worker threads; 0 on the GPU.
     pub threads: usize,
+    /// Bytes of the largest array that it can read; `None` if only memory is the limit.
+    pub max_array_bytes: Option<u64>,
 }
 
 /// What is to be traced.

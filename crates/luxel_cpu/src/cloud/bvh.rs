@@ -1,35 +1,33 @@
-//! Closest hit in the BVH over spheres: a leaf's spheres are looked through four at a time.
-use luxel_flat::{Counter, Counters, FlatScene, Instance, LeafSphere};
+//! Hits in the BVH over spheres: a leaf's spheres are looked through four at a time.
+use luxel_flat::{Counter, Counters, LeafSphere};
+use luxel_geom::Real;
 use luxel_geom::sphere::QuadRay;
-use luxel_geom::{Real, SlabRay};
 
-use super::Closest;
+use crate::bvh::{self, Walk};
 use crate::hit::PrimitiveHit;
-use crate::{Exclusion, bvh};
+use crate::query::{Query, Search};
 
-/// The closest sphere along a ray in the cloud's space.
-pub(super) fn intersect<R: Real>(
-    scene: &FlatScene,
-    instance: &Instance,
-    ray: &SlabRay<R>,
-    exclusion: &Exclusion,
-    counters: &mut Counters,
-) -> Option<PrimitiveHit<R>> {
-    let nodes = scene.sphere_nodes.as_slice();
-    let nodes = &nodes[..nodes.len().min(instance.node_count as usize)];
-    let spheres = scene.leaf_spheres.as_slice();
-    let quad_ray = QuadRay::new(ray);
-    let mut closest = Closest::new(ray, exclusion);
+/// The wanted sphere along a ray in the cloud's space.
+pub(super) fn intersect<R: Real>(query: &Query<'_, R>, counters: &mut Counters) -> Option<PrimitiveHit<R>> {
+    let nodes = query.scene.sphere_nodes.as_slice();
+    let nodes = &nodes[..nodes.len().min(query.instance.node_count as usize)];
+    let spheres = query.scene.leaf_spheres.as_slice();
+    if !bvh::enters_root(nodes, &query.ray) {
+        counters[Counter::SphereNodes] += Walk::ROOT_MISSED.node_count;
+        return None;
+    }
+    let quad_ray = QuadRay::new(&query.ray);
+    let mut search = Search::new(query);
     let mut test_count = 0;
-    let walk = bvh::walk(nodes, ray, |first, count| {
+    let walk = bvh::walk(nodes, &query.ray, |first, count| {
         test_count += u64::from(count);
-        test_leaf(spheres, first as usize, count as usize, &quad_ray, &mut closest);
-        closest.ray.t_max
+        test_leaf(spheres, first as usize, count as usize, &quad_ray, &mut search);
+        search.ray.t_max
     });
     counters[Counter::SphereNodes] += walk.node_count;
     counters[Counter::SphereTests] += test_count;
     counters[Counter::TraversalCaps] += u64::from(!walk.is_sound);
-    closest.best
+    search.best
 }
 
 /// Tests consecutive spheres. Where four can be read, most are ruled out together; the last few are not read past
@@ -40,7 +38,7 @@ fn test_leaf<R: Real>(
     first: usize,
     count: usize,
     quad_ray: &QuadRay<R>,
-    closest: &mut Closest<R>,
+    search: &mut Search<R>,
 ) {
     let end = (first + count).min(spheres.len());
     for first in (first..end).step_by(4) {
@@ -50,11 +48,11 @@ fn test_leaf<R: Real>(
             let of_this_leaf = 0b1111 >> (4 - (end - first).min(4));
             let mut left = quad_ray.can_meet([axis(0), axis(1), axis(2)], radii) & of_this_leaf;
             while left != 0 {
-                closest.offer(&spheres[first + left.trailing_zeros() as usize]);
+                search.offer_sphere(&spheres[first + left.trailing_zeros() as usize]);
                 left &= left - 1;
             }
         } else {
-            spheres[first..end].iter().for_each(|sphere| closest.offer(sphere));
+            spheres[first..end].iter().for_each(|sphere| search.offer_sphere(sphere));
         }
     }
 }

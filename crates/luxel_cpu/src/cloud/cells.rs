@@ -1,4 +1,4 @@
-//! Closest hit in the octree of cells, as the report searches it (seed 1, II.D).
+//! Hits in the octree of cells, as the report searches it (seed 1, II.D).
 //!
 //! *Base*: every leaf that the ray passes through, whatever was found before; of all hits the closest counts. Exact
 //! (from very far up to rounding, see `luxel_accel::CellOctree`), because a sphere stands in every leaf that it
@@ -10,35 +10,28 @@
 //! way back up from parent links instead of a stack of nodes.
 use std::ops::ControlFlow;
 
-use luxel_flat::{Counter, Counters, FlatScene, Instance, LeafSphere, OctreeNode};
+use luxel_flat::{Counter, Counters, LeafSphere, OctreeNode};
 use luxel_geom::{Real, SlabRay};
 
-use super::Closest;
 use super::octree::{enters, node_slice};
 use super::walk::{Visitor, octant, walk};
-use crate::Exclusion;
 use crate::hit::PrimitiveHit;
+use crate::query::{Query, Search, Wanted};
 
-/// The closest sphere along a ray in the cloud's space: the whole octree is searched.
+/// The wanted sphere along a ray in the cloud's space: the whole octree is searched.
 pub(super) fn intersect_base<R: Real>(
-    scene: &FlatScene,
-    instance: &Instance,
-    ray: &SlabRay<R>,
-    exclusion: &Exclusion,
+    query: &Query<'_, R>,
     counters: &mut Counters,
 ) -> Option<PrimitiveHit<R>> {
-    search(scene, instance, ray, exclusion, counters, Order { octant: 0, first_hit_ends: false })
+    search(query, counters, Order { octant: 0, first_hit_ends: query.wanted == Wanted::Any })
 }
 
 /// The closest sphere of the first leaf in which any is hit.
 pub(super) fn intersect_seed<R: Real>(
-    scene: &FlatScene,
-    instance: &Instance,
-    ray: &SlabRay<R>,
-    exclusion: &Exclusion,
+    query: &Query<'_, R>,
     counters: &mut Counters,
 ) -> Option<PrimitiveHit<R>> {
-    search(scene, instance, ray, exclusion, counters, Order { octant: octant(ray), first_hit_ends: true })
+    search(query, counters, Order { octant: octant(&query.ray), first_hit_ends: true })
 }
 
 /// What the two searches differ in.
@@ -48,33 +41,26 @@ struct Order {
     first_hit_ends: bool,
 }
 
-fn search<R: Real>(
-    scene: &FlatScene,
-    instance: &Instance,
-    ray: &SlabRay<R>,
-    exclusion: &Exclusion,
-    counters: &mut Counters,
-    order: Order,
-) -> Option<PrimitiveHit<R>> {
-    let leaves = scene.leaf_spheres.as_slice();
-    let mut search = Search { leaves, ray, closest: Closest::new(ray, exclusion), order, counters };
-    let is_sound = walk(node_slice(scene, instance), order.octant, &mut search);
-    let best = search.closest.best;
+fn search<R: Real>(query: &Query<'_, R>, counters: &mut Counters, order: Order) -> Option<PrimitiveHit<R>> {
+    let leaves = query.scene.leaf_spheres.as_slice();
+    let mut cells = Cells { leaves, ray: &query.ray, search: Search::new(query), order, counters };
+    let is_sound = walk(node_slice(query.scene, query.instance), order.octant, &mut cells);
+    let best = cells.search.best;
     counters[Counter::TraversalCaps] += u64::from(!is_sound);
     best
 }
 
 /// The state of one search.
-struct Search<'a, R: Real> {
+struct Cells<'a, R: Real> {
     leaves: &'a [LeafSphere],
     /// The ray as it came: what was found does not shorten it for the nodes.
     ray: &'a SlabRay<R>,
-    closest: Closest<R>,
+    search: Search<R>,
     order: Order,
     counters: &'a mut Counters,
 }
 
-impl<R: Real> Visitor for Search<'_, R> {
+impl<R: Real> Visitor for Cells<'_, R> {
     #[inline]
     fn enters(&mut self, node: &OctreeNode) -> bool {
         self.counters[Counter::SphereNodes] += 1;
@@ -84,9 +70,9 @@ impl<R: Real> Visitor for Search<'_, R> {
     #[inline]
     fn visit(&mut self, node: &OctreeNode) -> ControlFlow<()> {
         for record in listed(self.leaves, node) {
-            self.closest.test(record, self.counters);
+            self.search.test_sphere(record, self.counters);
         }
-        if self.order.first_hit_ends && self.closest.best.is_some() {
+        if self.order.first_hit_ends && self.search.best.is_some() {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())

@@ -1,4 +1,4 @@
-//! Closest hit in the loose octree: front to back by the ray's octant, pruned by the best hit.
+//! Hits in the loose octree: front to back by the ray's octant, pruned by the best hit.
 //!
 //! Order only saves time; the result follows from the boxes (`luxel_geom::aabb`).
 use std::ops::ControlFlow;
@@ -6,24 +6,16 @@ use std::ops::ControlFlow;
 use luxel_flat::{Counter, Counters, FlatScene, Instance, LeafSphere, OctreeNode, SphereRecord};
 use luxel_geom::{Aabb, Real, SlabRay, Vector};
 
-use super::Closest;
 use super::walk::{Visitor, octant, walk};
-use crate::Exclusion;
 use crate::hit::PrimitiveHit;
+use crate::query::{Query, Search};
 
-/// The closest sphere along a ray in the cloud's space.
-pub(super) fn intersect<R: Real>(
-    scene: &FlatScene,
-    instance: &Instance,
-    ray: &SlabRay<R>,
-    exclusion: &Exclusion,
-    counters: &mut Counters,
-) -> Option<PrimitiveHit<R>> {
-    let nodes = node_slice(scene, instance);
-    let mut search =
-        Search { spheres: scene.spheres.as_slice(), closest: Closest::new(ray, exclusion), counters };
-    let is_sound = walk(nodes, octant(ray), &mut search);
-    let best = search.closest.best;
+/// The wanted sphere along a ray in the cloud's space.
+pub(super) fn intersect<R: Real>(query: &Query<'_, R>, counters: &mut Counters) -> Option<PrimitiveHit<R>> {
+    let nodes = node_slice(query.scene, query.instance);
+    let mut chains = Chains { spheres: query.scene.spheres.as_slice(), search: Search::new(query), counters };
+    let is_sound = walk(nodes, octant(&query.ray), &mut chains);
+    let best = chains.search.best;
     counters[Counter::TraversalCaps] += u64::from(!is_sound);
     best
 }
@@ -43,17 +35,17 @@ pub(super) fn enters<R: Real>(node: &OctreeNode, ray: &SlabRay<R>) -> bool {
 }
 
 /// The state of one search.
-struct Search<'a, R: Real> {
+struct Chains<'a, R: Real> {
     spheres: &'a [SphereRecord],
-    closest: Closest<R>,
+    search: Search<R>,
     counters: &'a mut Counters,
 }
 
-impl<R: Real> Visitor for Search<'_, R> {
+impl<R: Real> Visitor for Chains<'_, R> {
     #[inline]
     fn enters(&mut self, node: &OctreeNode) -> bool {
         self.counters[Counter::SphereNodes] += 1;
-        enters(node, &self.closest.ray)
+        enters(node, &self.search.ray)
     }
 
     #[inline]
@@ -61,9 +53,9 @@ impl<R: Real> Visitor for Search<'_, R> {
         let mut slot = node.first_sphere;
         for _ in 0..node.sphere_count {
             let Some(record) = self.spheres.get(slot as usize) else { break };
-            self.closest.test(&LeafSphere::of(slot, record), self.counters);
+            self.search.test_sphere(&LeafSphere::of(slot, record), self.counters);
             slot = record.next;
         }
-        ControlFlow::Continue(())
+        if self.search.is_over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

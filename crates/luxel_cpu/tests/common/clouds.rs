@@ -59,7 +59,8 @@ pub(crate) fn naive_bits(
     rays.par_iter().enumerate().map(answer).collect()
 }
 
-/// Rays for which a scene's structure gives other bits than expected.
+/// Rays for which a scene's structure gives other bits than expected, or finds any hit where none is expected, or none
+/// where one is.
 pub(crate) fn wrong_rays(
     scene: &FlatScene,
     rays: &[Ray<f32>],
@@ -67,8 +68,10 @@ pub(crate) fn wrong_rays(
     expected: &[Option<[u32; 8]>],
 ) -> Vec<usize> {
     let is_wrong = |&i: &usize| {
-        let hit = traverse::intersect(scene, &rays[i], &exclusion(i), &mut Counters::default());
-        bits(&hit) != expected[i]
+        let mut counters = Counters::default();
+        let hit = traverse::intersect(scene, &rays[i], &exclusion(i), &mut counters);
+        let any = traverse::occluded(scene, &rays[i], &exclusion(i), &mut counters);
+        bits(&hit) != expected[i] || any != expected[i].is_some()
     };
     (0..rays.len()).into_par_iter().filter(is_wrong).collect()
 }

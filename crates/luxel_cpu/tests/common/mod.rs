@@ -8,7 +8,9 @@ use luxel_accel::{
 };
 use luxel_cpu::naive::Naive;
 use luxel_cpu::{Exclusion, Hit, traverse};
-use luxel_flat::{Counters, FlatScene, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SphereRecord};
+use luxel_flat::{
+    Counters, FlatScene, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, MESH_ACCELS, MeshAccel, SphereRecord,
+};
 use luxel_geom::{Aabb, Affine, Ray, Real};
 use luxel_testkit::TestMesh;
 use rayon::prelude::*;
@@ -88,7 +90,7 @@ impl SceneBuilder {
         let tlas = build_tlas(&boxes).unwrap();
         self.flat.params.tlas_first = self.flat.bvh_nodes.len() as u32;
         self.flat.params.tlas_count = tlas.len() as u32;
-        self.flat.bvh_nodes.write(self.flat.bvh_nodes.len(), &tlas, 1);
+        self.flat.tlas_nodes.write(0, &tlas, 1);
         self.flat.instances.write(0, &self.instances, 1);
         self.flat
     }
@@ -148,19 +150,35 @@ pub(crate) fn assert_equals_naive_excluding(
     rays.par_iter().filter(|ray| trace(scene, ray).is_some()).count()
 }
 
-/// A text for each ray for which structures and exhaustive search differ in any bit.
+/// A text for each ray for which exhaustive search and one of the ways through meshes differ in any bit, or for which
+/// whether there is any hit is not answered as the closest one is.
 pub(crate) fn differences(
     scene: &FlatScene,
     rays: &[Ray<f32>],
     exclusion: impl Fn(usize) -> Exclusion + Sync,
 ) -> Vec<String> {
     let naive = Naive::new(scene);
+    let ways: Vec<FlatScene> = ways(scene).collect();
     let compare = |(i, ray): (usize, &Ray<f32>)| {
-        let fast = traverse::intersect(scene, ray, &exclusion(i), &mut Counters::default());
         let slow = naive.intersect(ray, &exclusion(i));
-        (bits(&fast) != bits(&slow)).then(|| format!("ray {i}: {ray:?}\n  fast {fast:?}\n  naive {slow:?}"))
+        let differs = |way: &&FlatScene| {
+            let mut counters = Counters::default();
+            let fast = traverse::intersect(way, ray, &exclusion(i), &mut counters);
+            let any = traverse::occluded(way, ray, &exclusion(i), &mut counters);
+            bits(&fast) != bits(&slow) || any != slow.is_some()
+        };
+        let wrong = ways.iter().find(differs)?;
+        let fast = traverse::intersect(wrong, ray, &exclusion(i), &mut Counters::default());
+        Some(format!("{}, ray {i}: {ray:?}\n  fast {fast:?}\n  naive {slow:?}", wrong.mesh_accel.name()))
     };
     rays.par_iter().enumerate().filter_map(compare).collect()
+}
+
+/// The scene under every way through meshes; not triangle by triangle where that would take too long.
+fn ways(scene: &FlatScene) -> impl Iterator<Item = FlatScene> {
+    let is_small = scene.triangles.len() <= 10_000;
+    let ways = MESH_ACCELS.iter().filter(move |row| is_small || row.accel != MeshAccel::Naive);
+    ways.map(|row| FlatScene { mesh_accel: row.accel, ..scene.clone() })
 }
 
 /// Everything that a hit says, as bits.

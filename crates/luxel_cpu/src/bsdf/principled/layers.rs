@@ -1,0 +1,260 @@
+//! What the principled model is made of at a point, and how its layers share the light.
+//!
+//! From the top: a clear coat; under it microfacets, which mirror light (metal and dielectric) and refract it (the clear
+//! part of the dielectric); under them the diffuse base. What one layer lets through is coupled to the next by directional
+//! albedos from `luxel_geom::albedo`, so that reciprocity holds and no light is made:
+//!
+//! - the diffuse base by (1 − E(o)) (1 − E(i)) / mean of (1 − E), E being the albedo of all above it;
+//! - the microfacets under a coat of albedo C by 1 − max(C(o), C(i)): exact for a mirror, and never too much;
+//! - light that single scattering between microfacets loses comes back by Kulla and Conty's lobe (2017).
+use luxel_flat::MATERIAL_THIN;
+use luxel_geom::albedo::lookup;
+use luxel_geom::{Real, Vector, microfacet, optics, schlick};
+
+use super::super::Bsdf;
+use super::fresnel::{self, Dielectric};
+
+/// Index of the clear coat (`KHR_materials_clearcoat`).
+pub(super) const COAT_INDEX: f64 = 1.5;
+/// Least distance of a rough body's index from 1: nearer to it a refracted direction does not tell the microfacet.
+const LEAST_INDEX: f64 = 1.001;
+/// Gauss and Legendre's points and weights on [0, 1].
+const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+/// The material at a point, seen from one side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layers<'a, R: Real> {
+    pub(super) bsdf: &'a Bsdf<R>,
+    tables: &'a [f32],
+    /// Shares of the base: metal, diffuse, clear.
+    pub(super) metal: R,
+    pub(super) diffuse: R,
+    pub(super) clear: R,
+    /// Share of the base that is dielectric.
+    pub(super) dielectric_share: R,
+    /// Width of the microfacets' lobe.
+    pub(super) alpha: R,
+    /// The microfacets lie level: a mirror.
+    pub(super) is_smooth: bool,
+    /// Clear sheet that does not refract.
+    pub(super) is_thin: bool,
+    /// Seen from inside a clear body.
+    pub(super) is_inside: bool,
+    pub(super) dielectric: Dielectric<R>,
+    /// Strength of the coat as seen from here; from inside there is none.
+    pub(super) coat: R,
+    pub(super) coat_alpha: R,
+    pub(super) is_coat_smooth: bool,
+}
+
+/// Directional albedos under a cosine.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Albedos<R: Real> {
+    /// The cosine.
+    pub(super) cos: R,
+    /// Share lost by single scattering if the microfacets reflect all.
+    pub(super) loss: R,
+    /// Share lost by single scattering at glass.
+    pub(super) glass_loss: R,
+    /// Share that the dielectric microfacets mirror.
+    pub(super) mirrored: R::Vec3,
+    /// Share that the coat mirrors.
+    pub(super) coat: R,
+}
+
+impl<'a, R: Real> Layers<'a, R> {
+    pub(super) fn new(bsdf: &'a Bsdf<R>, front: bool, tables: &'a [f32]) -> Self {
+        let is_thin = bsdf.flags & MATERIAL_THIN != 0;
+        let is_inside = !front && !is_thin && bsdf.transmission > R::ZERO;
+        let alpha = microfacet::alpha_of_roughness(bsdf.roughness);
+        let is_smooth = microfacet::is_effectively_smooth(alpha);
+        let index = index(bsdf, is_smooth || is_thin);
+        let coat_alpha = microfacet::alpha_of_roughness(bsdf.clearcoat_roughness);
+        let dielectric = R::ONE - bsdf.metallic;
+        Self {
+            bsdf,
+            tables,
+            metal: bsdf.metallic,
+            // Paint hides the inside of a body: what comes from there is let out or absorbed.
+            dielectric_share: dielectric,
+            diffuse: if is_inside { R::ZERO } else { dielectric * (R::ONE - bsdf.transmission) },
+            clear: dielectric * bsdf.transmission,
+            alpha,
+            is_smooth,
+            is_thin,
+            is_inside,
+            dielectric: Dielectric::new(bsdf, if is_inside { R::ONE / index } else { index }),
+            coat: if is_inside { R::ZERO } else { bsdf.clearcoat },
+            coat_alpha,
+            is_coat_smooth: microfacet::is_effectively_smooth(coat_alpha),
+        }
+    }
+
+    /// Reflectance of a microfacet, metal and dielectric together.
+    pub(super) fn reflectance(&self, cos: R) -> R::Vec3 {
+        let dielectric = self.dielectric.reflectance(cos) * (R::ONE - self.metal);
+        if self.metal == R::ZERO {
+            return dielectric;
+        }
+        dielectric + fresnel::metal(self.bsdf, cos) * self.metal
+    }
+
+    /// Share of light, tinted, that a clear microfacet lets pass.
+    pub(super) fn transmittance(&self, cos: R) -> R::Vec3 {
+        let passing = R::Vec3::splat(R::ONE) - self.dielectric.reflectance(cos);
+        passing * self.bsdf.color * self.clear
+    }
+
+    /// The albedos under a cosine in `[0, 1]`, on the side that the surface is seen from.
+    pub(super) fn albedos(&self, cos: R) -> Albedos<R> {
+        let (loss, glass_loss) = if self.is_smooth {
+            (R::ZERO, R::ZERO)
+        } else {
+            (
+                lookup::conductor_loss(self.tables, cos, self.bsdf.roughness),
+                self.glass_loss(cos, self.dielectric.eta),
+            )
+        };
+        let coat = if self.coat > R::ZERO { self.coat * self.coat_albedo(cos) } else { R::ZERO };
+        Albedos { cos, loss, glass_loss, mirrored: self.mirrored(cos, loss), coat }
+    }
+
+    fn mirrored(&self, cos: R, loss: R) -> R::Vec3 {
+        let eta = self.dielectric.eta;
+        let exact = if self.is_smooth || self.is_inside {
+            optics::fresnel_dielectric(cos, eta).reflectance * (R::ONE - loss)
+        } else {
+            lookup::coat_albedo(self.tables, cos, self.bsdf.roughness, eta)
+        };
+        self.dielectric.mean(R::ONE - loss, exact)
+    }
+
+    /// Share that single scattering at the clear part loses, for a direction on the side from which the index is `eta`.
+    fn glass_loss(&self, cos: R, eta: R) -> R {
+        if self.clear == R::ZERO {
+            R::ZERO
+        } else if self.is_thin {
+            lookup::conductor_loss(self.tables, cos, self.bsdf.roughness)
+        } else {
+            lookup::glass_loss(self.tables, cos, self.bsdf.roughness, eta)
+        }
+    }
+
+    /// Loss of a clear, rough surface for a direction on the far side.
+    pub(super) fn far_glass_loss(&self, cos: R) -> R {
+        self.glass_loss(cos, R::ONE / self.dielectric.eta)
+    }
+
+    /// Albedo of the coat itself, its strength left out.
+    pub(super) fn coat_albedo(&self, cos: R) -> R {
+        let index = R::from_f64(COAT_INDEX);
+        if self.is_coat_smooth {
+            return optics::fresnel_dielectric(cos, index).reflectance;
+        }
+        lookup::coat_albedo(self.tables, cos, self.bsdf.clearcoat_roughness, index)
+    }
+
+    /// What the layers above the diffuse base let through under a cosine.
+    pub(super) fn passing(&self, at: &Albedos<R>) -> R::Vec3 {
+        (R::Vec3::splat(R::ONE) - at.mirrored) * (R::ONE - at.coat)
+    }
+
+    /// The cosine-weighted mean of [`Self::passing`].
+    pub(super) fn passing_average(&self) -> R::Vec3 {
+        if self.coat > R::ZERO {
+            return GAUSS.iter().fold(R::Vec3::splat(R::ZERO), |sum, (cos, weight)| {
+                let passing = self.passing(&self.albedos(R::from_f64(*cos)));
+                sum + passing * R::from_f64(2.0 * cos * weight)
+            });
+        }
+        let loss = if self.is_smooth {
+            R::ZERO
+        } else {
+            lookup::conductor_loss_average(self.tables, self.bsdf.roughness)
+        };
+        let roughness = if self.is_smooth { R::ZERO } else { self.bsdf.roughness };
+        let exact = lookup::coat_albedo_average(self.tables, roughness, self.dielectric.eta);
+        R::Vec3::splat(R::ONE) - self.dielectric.mean(R::ONE - loss, exact)
+    }
+
+    /// How the light comes back that single scattering loses.
+    pub(super) fn returns(&self) -> Returns<R> {
+        let black = R::Vec3::splat(R::ZERO);
+        let zero = R::ZERO;
+        let mut returns = Returns {
+            metal: black,
+            metal_average: zero,
+            through: black,
+            given_back: black,
+            near: zero,
+            far: zero,
+        };
+        if self.is_smooth {
+            return returns;
+        }
+        if self.metal > R::ZERO {
+            let average = lookup::conductor_loss_average(self.tables, self.bsdf.roughness);
+            let reflected = schlick::schlick_average::<R>(self.bsdf.color);
+            returns.metal = schlick::multi_scatter_tint::<R>(reflected, average) * self.metal;
+            returns.metal_average = average;
+        }
+        if self.clear > R::ZERO {
+            self.glass_returns(&mut returns);
+        }
+        returns
+    }
+
+    fn glass_returns(&self, returns: &mut Returns<R>) {
+        let eta = self.dielectric.eta;
+        let outer = if self.is_inside { R::ONE / eta } else { eta };
+        let exact = lookup::coat_albedo_average(self.tables, R::ZERO, outer);
+        // η and 1/η have one reflectance head-on, so the means on both sides are tinted alike.
+        returns.through = R::Vec3::splat(R::ONE) - self.dielectric.mean(R::ONE, exact);
+        if self.is_thin {
+            returns.near = lookup::conductor_loss_average(self.tables, self.bsdf.roughness);
+            returns.far = returns.near;
+            returns.given_back = R::Vec3::splat(self.clear);
+            return;
+        }
+        returns.near = lookup::glass_loss_average(self.tables, self.bsdf.roughness, eta);
+        returns.far = lookup::glass_loss_average(self.tables, self.bsdf.roughness, R::ONE / eta);
+        // Reciprocity across the border asks for equal near · through · index² on both sides.
+        let largest = returns.near.max(returns.far);
+        let balance = if largest > R::ZERO { returns.far / largest } else { R::ZERO };
+        let spread = if self.is_inside { eta * eta } else { R::ONE };
+        returns.through = returns.through * (balance * spread);
+        // No more comes back than a weaker or tinted reflection lets out.
+        let tint = self.bsdf.specular_color.min(R::Vec3::splat(R::ONE));
+        returns.given_back = tint * (self.bsdf.specular * self.clear);
+    }
+}
+
+/// How lost light comes back: from metal, and from clear microfacets on either side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Returns<R: Real> {
+    /// Tint of the metal's lobe, its share of the base included.
+    pub(super) metal: R::Vec3,
+    /// Average loss at the metal.
+    pub(super) metal_average: R,
+    /// Share of the clear part's lobe that comes out on the far side.
+    pub(super) through: R::Vec3,
+    /// Factor on all of the clear part's lobe.
+    pub(super) given_back: R::Vec3,
+    /// Average loss of the clear part, on the near side.
+    pub(super) near: R,
+    /// The same on the far side.
+    pub(super) far: R,
+}
+
+/// The index of the inside against the outside.
+fn index<R: Real>(bsdf: &Bsdf<R>, is_any_allowed: bool) -> R {
+    if is_any_allowed || bsdf.transmission == R::ZERO {
+        return bsdf.ior;
+    }
+    bsdf.ior.max(R::from_f64(LEAST_INDEX))
+}

@@ -1,0 +1,84 @@
+//! Grazing light, and random numbers at the ends of their range (L08, L09): weights are finite and bounded, densities
+//! positive, or the sample is refused.
+use glam::Vec3;
+use luxel_cpu::bsdf::Geometry;
+use luxel_flat::MaterialRecord;
+use luxel_geom::normal_guard;
+
+use crate::closures::{layered, lossless, sample};
+
+const ENDS: [f32; 5] =
+    [0.0, 1.0 / (1 << 24) as f32, 0.5, 1.0 - 2.0 / (1 << 24) as f32, 1.0 - 1.0 / (1 << 24) as f32];
+/// Closures with one lobe at a time: their weights never exceed one.
+const ONE_LOBE: [&str; 4] = ["lambert", "mirror", "dielectric", "semi-specular"];
+/// Others choose their lobe by its albedo. The lobe of light that comes back is sampled by the cosine and has up to
+/// 1 / (average loss) of it where light grazes: large, and as rare.
+const MOST: f32 = 1e5;
+
+fn places() -> Vec<Geometry<f32>> {
+    let mut places = Vec::new();
+    for cos in [0.0f32, 1e-7, 1e-4, 0.1, 1.0] {
+        let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+        for front in [true, false] {
+            places.push(Geometry { wo, normal: Vec3::Z, geometric: Vec3::Z, front });
+            // A shading normal that leans away from the view, and one that leans towards it.
+            for lean in [-0.5f32, 0.5] {
+                let leaning = Vec3::new(lean, 0.1, 1.0).normalize();
+                let normal = normal_guard::valid_shading_normal::<f32>(Vec3::Z, leaning, wo);
+                places.push(Geometry { wo, normal, geometric: Vec3::Z, front });
+            }
+        }
+    }
+    places
+}
+
+fn check(name: &str, record: &MaterialRecord, geometry: &Geometry<f32>, u: [f32; 3]) -> f32 {
+    let Some(sample) = sample(record, geometry, u) else { return 0.0 };
+    let is_finite = sample.wi.is_finite() && sample.weight.is_finite() && sample.pdf.is_finite();
+    let is_sound = sample.weight.min_element() >= 0.0 && sample.pdf >= 0.0 && sample.eta_scale > 0.0;
+    let is_unit = (sample.wi.length() - 1.0).abs() < 1e-5;
+    assert!(is_finite && is_sound && is_unit, "{name}: {geometry:?}, {u:?}: {sample:?}");
+    let energy = sample.weight.max_element() * sample.eta_scale;
+    let most = if ONE_LOBE.contains(&name) { 1.0 + 1e-4 } else { MOST };
+    assert!(energy <= most, "{name}: {geometry:?}, {u:?}: {sample:?}");
+    energy
+}
+
+#[test]
+fn every_sample_is_a_number_or_refused() {
+    let mut largest: f32 = 0.0;
+    for roughness in [0.0, 0.0316, 0.032, 0.1, 0.5, 1.0] {
+        for (name, record) in lossless(roughness).into_iter().chain(layered(roughness)) {
+            for geometry in places() {
+                for u0 in ENDS {
+                    for u1 in ENDS {
+                        for u2 in ENDS.into_iter().chain([0.03, 0.1, 0.3, 0.7, 0.9]) {
+                            largest = largest.max(check(name, &record, &geometry, [u0, u1, u2]));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    println!("largest weight {largest}");
+}
+
+#[test]
+fn nothing_crosses_the_true_surface_by_mistake() {
+    let mut numbers = crate::closures::Numbers::new(5);
+    for (name, record) in lossless(0.3).into_iter().chain(layered(0.3)) {
+        let lets_through = record.transmission > 0.0 || name == "dielectric";
+        for geometry in places() {
+            for _ in 0..50 {
+                let Some(sample) = sample(&record, &geometry, numbers.three()) else { continue };
+                let (shaded, is_above) =
+                    (sample.wi.dot(geometry.normal), sample.wi.dot(geometry.geometric) >= 0.0);
+                assert!(is_above || lets_through, "{name}: {geometry:?}: {sample:?}");
+                assert!(
+                    (shaded >= 0.0) == is_above || shaded.abs() < 1e-6,
+                    "{name}: {geometry:?}: {sample:?}"
+                );
+            }
+        }
+    }
+}

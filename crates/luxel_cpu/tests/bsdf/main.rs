@@ -1,0 +1,8 @@
+//! Surface scattering against what must hold for any material: energy, densities, reciprocity, extremes.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+mod closures;
+mod densities;
+mod extremes;
+mod furnace;
+mod glass;
+mod reciprocity;
