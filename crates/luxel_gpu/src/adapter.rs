@@ -38,6 +38,13 @@ pub struct GpuLimits {
     pub max_workgroup_storage_bytes: u32,
 }
 
+impl GpuLimits {
+    /// Bytes of the largest buffer that can be bound whole, a multiple of 4.
+    pub fn max_array_bytes(&self) -> u64 {
+        self.max_buffer_bytes.min(self.max_storage_binding_bytes) & !(wgpu::COPY_BUFFER_ALIGNMENT - 1)
+    }
+}
+
 impl From<&wgpu::Limits> for GpuLimits {
     fn from(limits: &wgpu::Limits) -> Self {
         Self {

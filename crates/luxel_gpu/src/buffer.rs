@@ -62,7 +62,7 @@ impl GpuBuffer {
             return Ok(false);
         }
         let needed = capacity_for(gpu, &self.label, bytes)?;
-        let capacity = needed.max((2 * old_bytes).min(max_bytes(gpu)));
+        let capacity = needed.max((2 * old_bytes).min(gpu.limits().max_array_bytes()));
         let grown = create(gpu, &self.label, capacity)?;
         gpu.scoped(&self.label, 0, |device| {
             let mut encoder =
@@ -148,14 +148,8 @@ fn create(gpu: &Gpu, label: &str, bytes: u64) -> Result<wgpu::Buffer, GpuError> 
     })
 }
 
-/// The largest buffer that can be bound whole, a multiple of 4.
-fn max_bytes(gpu: &Gpu) -> u64 {
-    let limits = gpu.limits();
-    limits.max_buffer_bytes.min(limits.max_storage_binding_bytes) & !(wgpu::COPY_BUFFER_ALIGNMENT - 1)
-}
-
 fn capacity_for(gpu: &Gpu, label: &str, bytes: u64) -> Result<u64, GpuError> {
-    let has = max_bytes(gpu);
+    let has = gpu.limits().max_array_bytes();
     if bytes > has {
         let what = format!("buffer '{label}' in bytes");
         return Err(GpuError::LimitExceeded { what, needs: bytes, has });

@@ -241,7 +241,11 @@ fn watch(device: &wgpu::Device, health: &Arc<Health>) {
     });
 }
 
-/// The WebGPU defaults, with buffers as large as the adapter has them where the tier says so.
+/// Storage buffers that a kernel may bind where the adapter has as many: with textures and see-through surfaces the
+/// search for hits reads twelve arrays. Desktop adapters have at least sixteen.
+const MAX_STORAGE_BUFFERS: u32 = 16;
+
+/// The WebGPU defaults, with buffers as large as the adapter has them, and more of them, where the tier says so.
 fn limits_for(tier: LimitsTier, adapter: &wgpu::Limits) -> wgpu::Limits {
     let defaults = wgpu::Limits::default();
     match tier {
@@ -249,6 +253,10 @@ fn limits_for(tier: LimitsTier, adapter: &wgpu::Limits) -> wgpu::Limits {
         LimitsTier::Adapter => wgpu::Limits {
             max_buffer_size: adapter.max_buffer_size,
             max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
+            max_storage_buffers_per_shader_stage: adapter
+                .max_storage_buffers_per_shader_stage
+                .min(MAX_STORAGE_BUFFERS)
+                .max(defaults.max_storage_buffers_per_shader_stage),
             ..defaults
         },
     }
@@ -259,7 +267,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_adapter_tier_raises_buffer_sizes_alone() {
+    fn the_adapter_tier_raises_what_concerns_buffers() {
         let adapter = wgpu::Limits {
             max_buffer_size: 1 << 34,
             max_storage_buffer_binding_size: 1 << 33,
@@ -269,7 +277,7 @@ mod tests {
         let raised = GpuLimits::from(&limits_for(LimitsTier::Adapter, &adapter));
         assert_eq!(raised.max_buffer_bytes, 1 << 34);
         assert_eq!(raised.max_storage_binding_bytes, 1 << 33);
-        assert_eq!(raised.max_storage_buffers_per_stage, 8);
+        assert_eq!(raised.max_storage_buffers_per_stage, 16);
         let plain = GpuLimits::from(&limits_for(LimitsTier::WebGpuDefault, &adapter));
         assert_eq!(plain.max_storage_binding_bytes, 128 << 20);
         assert_eq!(plain.max_buffer_bytes, 256 << 20);

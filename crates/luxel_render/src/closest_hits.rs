@@ -1,18 +1,19 @@
-//! Any rays through the kernel `intersect`: what tests and measurements ask the GPU.
+//! Any rays through the kernels `intersect` and `shadow`: what tests and measurements ask the GPU.
 //!
 //! A ray takes the place of a path's; nothing is generated, shaded or summed.
 use std::sync::Arc;
 
 use luxel_flat::{
-    FAR, FlatScene, NONE, PATH_ALIVE, PATH_ENTERING, PATH_LEAVING, Path, SliceParams, WORKGROUP_SIZE,
+    FAR, FlatScene, NONE, PATH_ALIVE, PATH_ENTERING, PATH_LEAVING, Path, SHADOW_FAR, SHADOW_RAY, SliceParams,
+    WORKGROUP_SIZE,
 };
 use luxel_geom::{Exclude, Ray};
 use luxel_gpu::{
-    Frame, Gpu, GpuBuffer, GpuError, Overrides, Pipeline, PipelineCache, ShaderLibrary, SlicePolicy, Slicer,
-    workgroups_for,
+    Frame, Gpu, GpuBuffer, GpuError, Kernel, Overrides, Pipeline, PipelineCache, ShaderLibrary, SlicePolicy,
+    Slicer, workgroups_for,
 };
 
-use crate::kernels::{INTERSECT, conditions};
+use crate::kernels::{INTERSECT, SHADOW, conditions};
 use crate::{GpuFilm, GpuScene};
 
 /// What a ray met first.
@@ -95,24 +96,44 @@ impl RayShooter {
         self.trace(scene, rays.iter().map(|(ray, start)| path(ray, Some(start))).collect())
     }
 
+    /// Whether each ray meets anything in `(0, FAR]`; the rays' own intervals are not looked at.
+    ///
+    /// # Errors
+    /// When the scene does not fit the device, or the device fails.
+    pub fn occluded(&mut self, scene: &FlatScene, rays: &[Ray<f32>]) -> Result<Vec<bool>, GpuError> {
+        let mut paths: Vec<Path> = rays.iter().map(shadow_path).collect();
+        self.run(SHADOW, scene, &mut paths)?;
+        // A path whose shadow ray meets nothing gets its light. An invalid ray is none.
+        let is_dark = |(path, ray): (&Path, &Ray<f32>)| path.radiance == [0.0; 3] && ray.is_valid();
+        Ok(paths.iter().zip(rays).map(is_dark).collect())
+    }
+
     fn trace(&mut self, scene: &FlatScene, mut paths: Vec<Path>) -> Result<GpuHits, GpuError> {
-        let conditions = conditions(scene.features, scene.sphere_accel);
-        let pipeline = self.cache.get(&self.gpu, &INTERSECT, &conditions, &Overrides::default())?;
+        let (counters, busy_ms) = self.run(INTERSECT, scene, &mut paths)?;
+        Ok(GpuHits { hits: paths.iter().map(hit).collect(), counters, busy_secs: busy_ms * 1e-3 })
+    }
+
+    /// Brings paths one kernel further. Returns what it counted and the milliseconds that it ran.
+    fn run(
+        &mut self,
+        kernel: Kernel,
+        scene: &FlatScene,
+        paths: &mut [Path],
+    ) -> Result<(luxel_flat::Counters, f64), GpuError> {
+        let conditions = conditions(scene.features, scene.sphere_accel, scene.mesh_accel);
+        let pipeline = self.cache.get(&self.gpu, &kernel, &conditions, &Overrides::default())?;
         let mut buffers = GpuScene::new(&self.gpu)?;
         buffers.upload(&self.gpu, scene)?;
         buffers.clear_counters(&self.gpu)?;
-        let busy_ms = Shot { gpu: &self.gpu, pipeline, buffers: &buffers }.run(&mut paths)?;
-        Ok(GpuHits {
-            hits: paths.iter().map(hit).collect(),
-            counters: buffers.counters(&self.gpu)?,
-            busy_secs: busy_ms * 1e-3,
-        })
+        let busy_ms = Shot { gpu: &self.gpu, kernel, pipeline, buffers: &buffers }.run(paths)?;
+        Ok((buffers.counters(&self.gpu)?, busy_ms))
     }
 }
 
 /// What every slice of a shot needs.
 struct Shot<'a> {
     gpu: &'a Gpu,
+    kernel: Kernel,
     pipeline: Arc<Pipeline>,
     buffers: &'a GpuScene,
 }
@@ -144,7 +165,7 @@ impl Shot<'_> {
         let bindings = self.pipeline.bind(gpu, &self.buffers.resources().buffer("paths", buffer))?;
         let mut frame = Frame::new(gpu);
         let workgroups = workgroups_for(count.into(), WORKGROUP_SIZE, gpu.limits())?;
-        frame.compute(INTERSECT.entry, &self.pipeline, &bindings, workgroups)?;
+        frame.compute(self.kernel.entry, &self.pipeline, &bindings, workgroups)?;
         let times = frame.submit()?.wait(gpu)?;
         paths.copy_from_slice(&buffer.read::<Path>(gpu, 0, count.into())?);
         Ok(times.busy_ms())
@@ -168,6 +189,19 @@ fn path(ray: &Ray<f32>, start: Option<&Start>) -> Path {
         hit_t: FAR,
         hit_instance: NONE,
         ..Path::default()
+    }
+}
+
+/// A path whose shadow ray is the given one; none if that is not valid.
+fn shadow_path(ray: &Ray<f32>) -> Path {
+    Path {
+        shadow_origin: ray.origin.into(),
+        shadow_direction: ray.direction.into(),
+        shadow_state: if ray.is_valid() { SHADOW_RAY | SHADOW_FAR } else { 0 },
+        shadow_radiance: [1.0; 3],
+        exclude_instance: NONE,
+        exclude_primitive: NONE,
+        ..path(ray, None)
     }
 }
 

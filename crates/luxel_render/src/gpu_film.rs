@@ -1,7 +1,7 @@
 //! The film on the GPU, in tiles that respect the binding limit, and the paths in flight.
 use bevy_ecs::prelude::Resource;
 use luxel_film::Film;
-use luxel_flat::{Aov, FilmPixel, Path};
+use luxel_flat::{Aov, FilmPixel, Path, SurfacePoint};
 use luxel_gpu::{Gpu, GpuBuffer, GpuError, Resources};
 
 /// Most pixels of a tile, whatever the device allows.
@@ -15,11 +15,12 @@ struct Tile {
     aovs: Option<GpuBuffer>,
 }
 
-/// Accumulated samples, first-hit outputs, and paths.
+/// Accumulated samples, first-hit outputs, paths, and the surfaces at their ends.
 #[derive(Resource)]
 pub struct GpuFilm {
     tiles: Vec<Tile>,
     paths: GpuBuffer,
+    surfaces: GpuBuffer,
     resolved: GpuBuffer,
 }
 
@@ -41,6 +42,7 @@ impl GpuFilm {
         Ok(Self {
             tiles: tiles.collect::<Result<_, GpuError>>()?,
             paths: GpuBuffer::new(gpu, "paths", size_of::<Path>() as u64)?,
+            surfaces: GpuBuffer::new(gpu, "surfaces", size_of::<SurfacePoint>() as u64)?,
             resolved: GpuBuffer::new(gpu, "resolved", size_of::<u32>() as u64)?,
         })
     }
@@ -58,12 +60,14 @@ impl GpuFilm {
     /// Makes room for a number of paths.
     pub(crate) fn reserve_paths(&mut self, gpu: &Gpu, count: u32) -> Result<(), GpuError> {
         self.paths.reserve(gpu, u64::from(count) * size_of::<Path>() as u64)?;
+        self.surfaces.reserve(gpu, u64::from(count) * size_of::<SurfacePoint>() as u64)?;
         Ok(())
     }
 
     /// Most paths that may be in flight: as many as fit into one binding.
     pub(crate) fn max_paths(gpu: &Gpu) -> u64 {
-        (gpu.limits().max_storage_binding_bytes / size_of::<Path>() as u64).min(MAX_TILE_PIXELS)
+        let record = size_of::<Path>().max(size_of::<SurfacePoint>()) as u64;
+        (gpu.limits().max_storage_binding_bytes / record).min(MAX_TILE_PIXELS)
     }
 
     /// Makes room for the picture of a tile.
@@ -96,6 +100,7 @@ impl GpuFilm {
         let tile = &self.tiles[tile];
         let resources = resources
             .buffer("paths", &self.paths)
+            .buffer("surfaces", &self.surfaces)
             .buffer("film", &tile.pixels)
             .buffer("resolved", &self.resolved);
         match &tile.aovs {

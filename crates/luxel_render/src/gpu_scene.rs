@@ -1,9 +1,12 @@
 //! The flat scene on the GPU: one buffer per heap, of which only newer pages are uploaded.
+use std::ops::Range;
+
 use bevy_ecs::prelude::Resource;
 use bytemuck::Pod;
 use luxel_flat::{
-    BvhNode, Counter, DisplayParams, FlatScene, Heap, Instance, LeafSphere, MaterialRecord, OctreeNode,
-    SceneParams, SliceParams, SphereRecord, SvoNode, Triangle,
+    BvhNode, Counter, DisplayParams, FlatScene, Heap, Instance, LeafSphere, LightNode, LightRecord,
+    MaterialRecord, OctreeNode, SceneParams, SliceParams, SphereRecord, SvoNode, TextureSlot, Triangle,
+    TriangleAttributes,
 };
 use luxel_gpu::{Gpu, GpuBuffer, GpuError, Resources, Uniform};
 
@@ -31,13 +34,50 @@ impl<T: Pod + Default> GpuHeap<T> {
             return Ok(0);
         }
         self.buffer.reserve(gpu, heap.bytes() as u64)?;
-        let mut written = 0;
-        for range in ranges {
-            let records = &heap.as_slice()[range.clone()];
-            self.buffer.write(gpu, range.start as u64, records)?;
-            written += size_of_val(records) as u64;
-        }
+        let written = write(gpu, &self.buffer, 0, heap, &ranges)?;
         self.revision = heap.revision();
+        Ok(written)
+    }
+}
+
+/// Writes ranges of a heap that begins at an element of a buffer; returns the bytes written.
+fn write<T: Pod + Default>(
+    gpu: &Gpu,
+    buffer: &GpuBuffer,
+    first: u64,
+    heap: &Heap<T>,
+    ranges: &[Range<usize>],
+) -> Result<u64, GpuError> {
+    let mut written = 0;
+    for range in ranges {
+        let records = &heap.as_slice()[range.clone()];
+        buffer.write(gpu, first + range.start as u64, records)?;
+        written += size_of_val(records) as u64;
+    }
+    Ok(written)
+}
+
+/// The nodes of the meshes' trees and behind them the TLAS: two heaps, one binding.
+struct GpuNodes {
+    meshes: GpuHeap<BvhNode>,
+    tlas_first: u64,
+    tlas_revision: u64,
+}
+
+impl GpuNodes {
+    fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { meshes: GpuHeap::new(gpu, "bvh_nodes")?, tlas_first: 0, tlas_revision: 0 })
+    }
+
+    /// Brings the nodes up to a snapshot; returns the bytes written. A TLAS that stands elsewhere than before is
+    /// written whole.
+    fn upload(&mut self, gpu: &Gpu, scene: &FlatScene) -> Result<u64, GpuError> {
+        let mut written = self.meshes.upload(gpu, &scene.bvh_nodes)?;
+        let (tlas, first) = (&scene.tlas_nodes, u64::from(scene.params.tlas_first));
+        let since = if first == self.tlas_first { self.tlas_revision } else { 0 };
+        self.meshes.buffer.reserve(gpu, (first + tlas.len() as u64) * size_of::<BvhNode>() as u64)?;
+        written += write(gpu, &self.meshes.buffer, first, tlas, &tlas.newer_than(since))?;
+        (self.tlas_first, self.tlas_revision) = (first, tlas.revision());
         Ok(written)
     }
 }
@@ -45,7 +85,7 @@ impl<T: Pod + Default> GpuHeap<T> {
 /// Buffers of the scene, the uniforms, and the counters.
 #[derive(Resource)]
 pub struct GpuScene {
-    bvh_nodes: GpuHeap<BvhNode>,
+    bvh_nodes: GpuNodes,
     instances: GpuHeap<Instance>,
     octree_nodes: GpuHeap<OctreeNode>,
     spheres: GpuHeap<SphereRecord>,
@@ -54,7 +94,13 @@ pub struct GpuScene {
     triangles: GpuHeap<Triangle>,
     svo_nodes: GpuHeap<SvoNode>,
     materials: GpuHeap<MaterialRecord>,
-    material_params: GpuHeap<[f32; 4]>,
+    triangle_attributes: GpuHeap<TriangleAttributes>,
+    textures: GpuHeap<TextureSlot>,
+    texels: GpuHeap<u32>,
+    albedo_tables: GpuHeap<f32>,
+    lights: GpuHeap<LightRecord>,
+    light_nodes: GpuHeap<LightNode>,
+    environment: GpuHeap<[f32; 4]>,
     params: Uniform<SceneParams>,
     slice: Uniform<SliceParams>,
     display: Uniform<DisplayParams>,
@@ -68,7 +114,7 @@ impl GpuScene {
     /// When the device has no room or is gone.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
-            bvh_nodes: GpuHeap::new(gpu, "bvh_nodes")?,
+            bvh_nodes: GpuNodes::new(gpu)?,
             instances: GpuHeap::new(gpu, "instances")?,
             octree_nodes: GpuHeap::new(gpu, "octree_nodes")?,
             spheres: GpuHeap::new(gpu, "spheres")?,
@@ -77,7 +123,13 @@ impl GpuScene {
             triangles: GpuHeap::new(gpu, "triangles")?,
             svo_nodes: GpuHeap::new(gpu, "svo_nodes")?,
             materials: GpuHeap::new(gpu, "materials")?,
-            material_params: GpuHeap::new(gpu, "material_params")?,
+            triangle_attributes: GpuHeap::new(gpu, "triangle_attributes")?,
+            textures: GpuHeap::new(gpu, "textures")?,
+            texels: GpuHeap::new(gpu, "texels")?,
+            albedo_tables: GpuHeap::new(gpu, "albedo_tables")?,
+            lights: GpuHeap::new(gpu, "lights")?,
+            light_nodes: GpuHeap::new(gpu, "light_nodes")?,
+            environment: GpuHeap::new(gpu, "environment")?,
             params: Uniform::new(gpu, "scene", &SceneParams::default())?,
             slice: Uniform::new(gpu, "slice", &SliceParams::default())?,
             display: Uniform::new(gpu, "display", &DisplayParams::default())?,
@@ -95,7 +147,7 @@ impl GpuScene {
     /// When a heap does not fit the device.
     pub fn upload(&mut self, gpu: &Gpu, scene: &FlatScene) -> Result<u64, GpuError> {
         self.params.write(gpu, &scene.params)?;
-        Ok(self.bvh_nodes.upload(gpu, &scene.bvh_nodes)?
+        Ok(self.bvh_nodes.upload(gpu, scene)?
             + self.instances.upload(gpu, &scene.instances)?
             + self.octree_nodes.upload(gpu, &scene.octree_nodes)?
             + self.spheres.upload(gpu, &scene.spheres)?
@@ -104,7 +156,13 @@ impl GpuScene {
             + self.triangles.upload(gpu, &scene.triangles)?
             + self.svo_nodes.upload(gpu, &scene.svo_nodes)?
             + self.materials.upload(gpu, &scene.materials)?
-            + self.material_params.upload(gpu, &scene.material_params)?)
+            + self.triangle_attributes.upload(gpu, &scene.triangle_attributes)?
+            + self.textures.upload(gpu, &scene.textures)?
+            + self.texels.upload(gpu, &scene.texels)?
+            + self.albedo_tables.upload(gpu, &scene.albedo_tables)?
+            + self.lights.upload(gpu, &scene.lights)?
+            + self.light_nodes.upload(gpu, &scene.light_nodes)?
+            + self.environment.upload(gpu, &scene.environment)?)
     }
 
     /// Sets what the next submit works on.
@@ -135,7 +193,7 @@ impl GpuScene {
     /// Everything that a kernel may bind of the scene, by name.
     pub(crate) fn resources(&self) -> Resources<'_> {
         Resources::new()
-            .buffer("bvh_nodes", &self.bvh_nodes.buffer)
+            .buffer("bvh_nodes", &self.bvh_nodes.meshes.buffer)
             .buffer("instances", &self.instances.buffer)
             .buffer("octree_nodes", &self.octree_nodes.buffer)
             .buffer("spheres", &self.spheres.buffer)
@@ -144,10 +202,63 @@ impl GpuScene {
             .buffer("triangles", &self.triangles.buffer)
             .buffer("svo_nodes", &self.svo_nodes.buffer)
             .buffer("materials", &self.materials.buffer)
-            .buffer("material_params", &self.material_params.buffer)
+            .buffer("triangle_attributes", &self.triangle_attributes.buffer)
+            .buffer("textures", &self.textures.buffer)
+            .buffer("texels", &self.texels.buffer)
+            .buffer("albedo_tables", &self.albedo_tables.buffer)
+            .buffer("lights", &self.lights.buffer)
+            .buffer("light_nodes", &self.light_nodes.buffer)
+            .buffer("environment", &self.environment.buffer)
             .buffer("counters", &self.counters)
             .uniform("scene", &self.params)
             .uniform("slice", &self.slice)
             .uniform("display", &self.display)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn node(number: u32) -> BvhNode {
+        BvhNode { skip: number, ..BvhNode::default() }
+    }
+
+    /// Heaps of numbered nodes, of which those of `revision` differ from the last.
+    fn scene(meshes: &Heap<BvhNode>, tlas: &[u32], revision: u64) -> FlatScene {
+        FlatScene {
+            params: SceneParams { tlas_first: meshes.len() as u32, ..SceneParams::default() },
+            bvh_nodes: meshes.clone(),
+            tlas_nodes: Heap::from_records(tlas.iter().map(|n| node(*n)).collect(), revision),
+            ..FlatScene::default()
+        }
+    }
+
+    /// Whatever grows, shrinks or goes, the TLAS stands behind the meshes' trees, and only what is new is written.
+    #[test]
+    fn the_tlas_follows_the_trees_of_the_meshes() {
+        let Some(gpu) = luxel_gpu::testing::gpu_or_fail() else { return };
+        let mut nodes = GpuNodes::new(&gpu).unwrap();
+        let mut meshes = Heap::from_records((0..1000).map(node).collect(), 1);
+        let mut check = |meshes: &Heap<BvhNode>, tlas: &[u32], revision: u64| {
+            let scene = scene(meshes, tlas, revision);
+            let written = nodes.upload(&gpu, &scene).unwrap() / size_of::<BvhNode>() as u64;
+            let expected: Vec<u32> =
+                meshes.as_slice().iter().map(|n| n.skip).chain(tlas.iter().copied()).collect();
+            let read: Vec<BvhNode> = nodes.meshes.buffer.read(&gpu, 0, expected.len() as u64).unwrap();
+            assert_eq!(read.iter().map(|n| n.skip).collect::<Vec<_>>(), expected, "revision {revision}");
+            assert_eq!(nodes.upload(&gpu, &scene).unwrap(), 0);
+            written
+        };
+        assert_eq!(check(&meshes, &[7, 8, 9], 1), 1003);
+        assert_eq!(check(&meshes, &[17, 18, 19], 2), 3, "a moved instance");
+        assert_eq!(check(&meshes, &[17; 5], 3), 5);
+        meshes.resize(1200, 4);
+        assert!(check(&meshes, &[17; 5], 3) >= 205, "another mesh moves the TLAS");
+        meshes.resize(100, 5);
+        check(&meshes, &[21, 22], 5);
+        check(&Heap::default(), &[31], 6);
+        check(&Heap::default(), &[], 7);
     }
 }

@@ -40,8 +40,8 @@ pub struct NodeRow {
     pub feature: Option<Feature>,
     /// Why it runs, as the end of a sentence that begins with "because".
     pub because: &'static str,
-    /// The system.
-    system: fn() -> ScheduleConfigs<ScheduleSystem>,
+    /// The system; `None` if the passes are recorded by the node before it, one by one between its own.
+    system: Option<fn() -> ScheduleConfigs<ScheduleSystem>>,
 }
 
 /// Every node, in the order of its stage.
@@ -52,7 +52,7 @@ pub const NODES: &[NodeRow] = &[
         kernels: &[],
         feature: None,
         because: "the kernels read which pixels and which sample they work on",
-        system: || nodes::begin.pipe(keep_error).into_configs(),
+        system: Some(|| nodes::begin.pipe(keep_error).into_configs()),
     },
     NodeRow {
         name: "generate",
@@ -60,15 +60,15 @@ pub const NODES: &[NodeRow] = &[
         kernels: &["generate"],
         feature: None,
         because: "every path starts at the camera",
-        system: || nodes::generate.pipe(keep_error).run_if(starting),
+        system: Some(|| nodes::generate.pipe(keep_error).run_if(starting)),
     },
     NodeRow {
         name: "camera_rays",
         set: GraphSet::CameraRays,
-        kernels: &["intersect"],
+        kernels: &["intersect", "surface"],
         feature: None,
         because: "every path needs to know what the camera sees",
-        system: || nodes::camera_rays.pipe(keep_error).run_if(starting),
+        system: Some(|| nodes::camera_rays.pipe(keep_error).run_if(starting)),
     },
     NodeRow {
         name: "first_hits",
@@ -76,15 +76,23 @@ pub const NODES: &[NodeRow] = &[
         kernels: &["first_hits"],
         feature: Some(Feature::Aovs),
         because: "first-hit outputs were asked for",
-        system: || nodes::first_hits.pipe(keep_error).run_if(starting).run_if(has_aovs),
+        system: Some(|| nodes::first_hits.pipe(keep_error).run_if(starting).run_if(has_aovs)),
     },
     NodeRow {
         name: "bounces",
         set: GraphSet::Bounces,
-        kernels: &["shade", "intersect"],
+        kernels: &["shade", "scatter", "intersect", "surface"],
         feature: None,
         because: "light is gathered where a ray ends, and the path may go on",
-        system: || nodes::bounces.pipe(keep_error).run_if(tracing),
+        system: Some(|| nodes::bounces.pipe(keep_error).run_if(tracing)),
+    },
+    NodeRow {
+        name: "shadow_rays",
+        set: GraphSet::Bounces,
+        kernels: &["shadow"],
+        feature: Some(Feature::Lights),
+        because: "a light that was sampled shines only on what it sees",
+        system: None,
     },
     NodeRow {
         name: "accumulate",
@@ -92,7 +100,7 @@ pub const NODES: &[NodeRow] = &[
         kernels: &["accumulate"],
         feature: None,
         because: "finished paths are samples of the picture",
-        system: || nodes::accumulate.pipe(keep_error).run_if(finishing),
+        system: Some(|| nodes::accumulate.pipe(keep_error).run_if(finishing)),
     },
     NodeRow {
         name: "resolve",
@@ -100,7 +108,7 @@ pub const NODES: &[NodeRow] = &[
         kernels: &["resolve"],
         feature: None,
         because: "a picture is shown when one is asked for",
-        system: || nodes::resolve.pipe(keep_error).run_if(resolving),
+        system: Some(|| nodes::resolve.pipe(keep_error).run_if(resolving)),
     },
 ];
 
@@ -161,7 +169,9 @@ pub fn schedule_in_order(order: impl IntoIterator<Item = usize>) -> Schedule {
             .chain(),
     );
     for row in order.into_iter().map(|index| &NODES[index]) {
-        schedule.add_systems((row.system)().in_set(row.set));
+        if let Some(system) = row.system {
+            schedule.add_systems(system().in_set(row.set));
+        }
     }
     schedule
 }

@@ -2,7 +2,7 @@
 use std::sync::Arc;
 
 use bevy_ecs::prelude::Resource;
-use luxel_flat::{Feature, FeatureSet, SphereAccel, WORKGROUP_SIZE};
+use luxel_flat::{Feature, FeatureSet, MeshAccel, SphereAccel, WORKGROUP_SIZE};
 use luxel_gpu::{Gpu, GpuError, Kernel, Overrides, Pipeline, PipelineCache};
 
 /// A kernel and when it is needed.
@@ -25,10 +25,16 @@ const fn kernel(module: &'static str, entry: &'static str) -> Kernel {
 pub(crate) const GENERATE: Kernel = kernel("package::kernels::generate", "generate");
 /// Finds closest hits.
 pub(crate) const INTERSECT: Kernel = kernel("package::kernels::intersect", "intersect");
+/// Finds the surfaces at the hits.
+pub(crate) const SURFACE: Kernel = kernel("package::kernels::surface", "surface");
 /// Writes first-hit outputs.
 pub(crate) const FIRST_HITS: Kernel = kernel("package::kernels::first_hits", "first_hits");
 /// Shades hits.
 pub(crate) const SHADE: Kernel = kernel("package::kernels::shade", "shade");
+/// Sends paths on.
+pub(crate) const SCATTER: Kernel = kernel("package::kernels::scatter", "scatter");
+/// Looks whether lights that were sampled are visible.
+pub(crate) const SHADOW: Kernel = kernel("package::kernels::shadow", "shadow");
 /// Adds samples to the film.
 pub(crate) const ACCUMULATE: Kernel = kernel("package::kernels::accumulate", "accumulate");
 /// Makes the picture to show.
@@ -36,17 +42,21 @@ pub(crate) const RESOLVE: Kernel = kernel("package::kernels::resolve", "resolve"
 
 /// Every kernel of the graph.
 pub const KERNELS: &[KernelRow] = &[
-    KernelRow { kernel: GENERATE, feature: None, max_functions: 12 },
-    KernelRow { kernel: INTERSECT, feature: None, max_functions: 60 },
+    KernelRow { kernel: GENERATE, feature: None, max_functions: 16 },
+    KernelRow { kernel: INTERSECT, feature: None, max_functions: 80 },
+    KernelRow { kernel: SURFACE, feature: None, max_functions: 60 },
     KernelRow { kernel: FIRST_HITS, feature: Some(Feature::Aovs), max_functions: 24 },
-    KernelRow { kernel: SHADE, feature: None, max_functions: 48 },
+    KernelRow { kernel: SHADE, feature: None, max_functions: 140 },
+    KernelRow { kernel: SCATTER, feature: None, max_functions: 110 },
+    KernelRow { kernel: SHADOW, feature: Some(Feature::Lights), max_functions: 80 },
     KernelRow { kernel: ACCUMULATE, feature: None, max_functions: 12 },
     KernelRow { kernel: RESOLVE, feature: None, max_functions: 24 },
 ];
 
-/// What a scene calls for as the conditions of a WESL compilation: its features, and the structure over its spheres.
-pub fn conditions(features: FeatureSet, accel: SphereAccel) -> luxel_gpu::FeatureSet {
-    features.conditions().chain(accel.conditions()).collect()
+/// What a scene calls for as the conditions of a WESL compilation: its features, the structure over its
+/// spheres, and how its meshes are searched.
+pub fn conditions(features: FeatureSet, spheres: SphereAccel, meshes: MeshAccel) -> luxel_gpu::FeatureSet {
+    features.conditions().chain(spheres.conditions()).chain(meshes.conditions()).collect()
 }
 
 /// The pipelines that the current scene needs, in the order of [`KERNELS`].
@@ -59,9 +69,10 @@ impl Pipelines {
         gpu: &Gpu,
         cache: &mut PipelineCache,
         features: FeatureSet,
-        accel: SphereAccel,
+        spheres: SphereAccel,
+        meshes: MeshAccel,
     ) -> Result<Self, GpuError> {
-        let conditions = conditions(features, accel);
+        let conditions = conditions(features, spheres, meshes);
         let needed = KERNELS.iter().filter(|row| row.feature.is_none_or(|f| features.has(f)));
         let pipelines = needed.map(|row| {
             let pipeline = cache.get(gpu, &row.kernel, &conditions, &Overrides::default())?;

@@ -1,9 +1,12 @@
 //! The nodes: each a system that records its passes into the frame.
 use bevy_ecs::prelude::*;
-use luxel_flat::{SliceParams, WORKGROUP_SIZE};
+use luxel_flat::{Feature, SliceParams, WORKGROUP_SIZE};
 use luxel_gpu::{Frame, Gpu, GpuError, Kernel, workgroups_for};
 
-use crate::kernels::{ACCUMULATE, FIRST_HITS, GENERATE, INTERSECT, Pipelines, RESOLVE, SHADE};
+use crate::graph::ActiveFeatures;
+use crate::kernels::{
+    ACCUMULATE, FIRST_HITS, GENERATE, INTERSECT, Pipelines, RESOLVE, SCATTER, SHADE, SHADOW, SURFACE,
+};
 use crate::{GpuFilm, GpuScene};
 
 /// The device.
@@ -69,6 +72,12 @@ impl Dispatch<'_> {
         let workgroups = workgroups_for(pixels, WORKGROUP_SIZE, gpu.limits())?;
         self.frame.0.compute(kernel.entry, pipeline, &bindings, workgroups)
     }
+
+    /// Traces the paths' rays up to the surfaces that they meet.
+    fn rays(&mut self) -> Result<(), GpuError> {
+        self.over_slice(&INTERSECT)?;
+        self.over_slice(&SURFACE)
+    }
 }
 
 /// Tells the kernels which pixels and which sample they work on.
@@ -83,7 +92,7 @@ pub(crate) fn generate(mut dispatch: Dispatch) -> Result<(), GpuError> {
 
 /// Traces the camera's rays.
 pub(crate) fn camera_rays(mut dispatch: Dispatch) -> Result<(), GpuError> {
-    dispatch.over_slice(&INTERSECT)
+    dispatch.rays()
 }
 
 /// Writes what they met.
@@ -91,14 +100,19 @@ pub(crate) fn first_hits(mut dispatch: Dispatch) -> Result<(), GpuError> {
     dispatch.over_slice(&FIRST_HITS)
 }
 
-/// Shades, and traces what was scattered, as often as this frame is to.
-pub(crate) fn bounces(mut dispatch: Dispatch) -> Result<(), GpuError> {
+/// Shades, and traces what was scattered, as often as this frame is to. The shadow rays of a bounce are a node in the
+/// table, but no system: they stand between two passes of this one.
+pub(crate) fn bounces(mut dispatch: Dispatch, features: Res<ActiveFeatures>) -> Result<(), GpuError> {
     let Purpose::Trace { starts, bounces, .. } = dispatch.work.purpose else { return Ok(()) };
     for bounce in 0..bounces {
         if bounce > 0 || !starts {
-            dispatch.over_slice(&INTERSECT)?;
+            dispatch.rays()?;
         }
         dispatch.over_slice(&SHADE)?;
+        if features.0.has(Feature::Lights) {
+            dispatch.over_slice(&SHADOW)?;
+        }
+        dispatch.over_slice(&SCATTER)?;
     }
     Ok(())
 }

@@ -101,8 +101,8 @@ impl GpuTracer {
         let pixels = request.scene.pixel_count() as u32;
         let aovs = request.features.has(Feature::Aovs);
         let compile = Instant::now();
-        let accel = request.scene.sphere_accel;
-        let pipelines = Pipelines::make(&self.gpu, &mut self.cache, request.features, accel)?;
+        let (spheres, meshes) = (request.scene.sphere_accel, request.scene.mesh_accel);
+        let pipelines = Pipelines::make(&self.gpu, &mut self.cache, request.features, spheres, meshes)?;
         let compile_secs = compile.elapsed().as_secs_f64();
         self.world.insert_resource(pipelines);
         self.world.insert_resource(ActiveFeatures(request.features));
@@ -291,6 +291,7 @@ impl Tracer for GpuTracer {
             device: adapter.name.clone(),
             driver: format!("{} {}", adapter.driver, adapter.driver_info),
             threads: 0,
+            max_array_bytes: Some(self.gpu.limits().max_array_bytes()),
         }
     }
 
