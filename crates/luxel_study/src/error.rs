@@ -77,8 +77,13 @@ pub enum StudyError {
     #[error("{} is not a folder", .0.display())]
     NotAFolder(PathBuf),
     /// A file in the folder has the name of one of a study's, but is of something else.
-    #[error("{} was not made by an octree study and is left as it is; name another folder", .0.display())]
-    Foreign(PathBuf),
+    #[error("{} was not made by {study} and is left as it is; name another folder", file.display())]
+    Foreign {
+        /// The file.
+        file: PathBuf,
+        /// The study that was to write it, as `an octree study`.
+        study: &'static str,
+    },
     /// Two studies were to write to one folder at once.
     #[error("another study is writing to {}", .0.display())]
     Busy(PathBuf),

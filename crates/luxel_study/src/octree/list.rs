@@ -5,7 +5,7 @@ use std::path::Path;
 
 use luxel_engine::QUALITIES;
 
-use super::picture::is_png;
+use crate::kit::picture::is_png;
 use super::plan::MAX_DEPTH;
 use super::record::{FORMAT, Run, STUDY};
 use super::select::STRUCTURES;

@@ -10,49 +10,38 @@
 //!
 //! Invariants: nothing in a folder changes until something was measured; a list of runs that is there is kept; a
 //! study that is stopped leaves what it has; figures 1 to 21 are always there, if only to say that they lack runs.
-mod chart;
 mod cube;
 mod field;
-mod figure;
 mod figures;
-mod list;
-mod measure;
-mod measured;
-mod origin;
+#[cfg(test)]
+mod files;
 mod page;
-mod picture;
 mod plan;
 mod record;
 mod select;
-mod stats;
-mod store;
+mod study;
 mod summary;
-mod text;
-mod verdict;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-pub use list::read_runs;
-pub use measure::{StudyEvent, StudyObserver, StudyProgress};
-pub use origin::Origin;
 pub use page::page;
 pub use plan::Plan;
 pub use record::{FORMAT, Run, STUDY, Sweep};
-pub use store::{PAGE, RUNS, TABLE};
+
+pub use crate::kit::origin::Origin;
+pub use crate::kit::{RUNS, StudyEvent, StudyObserver, StudyProgress, TABLE};
 
 use crate::StudyError;
-use store::Folder;
+use crate::kit::{self, list};
+#[cfg(test)]
+pub(crate) use record::example;
+pub(crate) use study::OctreeStudy;
+
+/// The page.
+pub const PAGE: &str = "octree.html";
 
 /// What a study left.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Studied {
-    /// The runs, in the order in which they were made.
-    pub runs: Vec<Run>,
-    /// False if the observer stopped it.
-    pub is_complete: bool,
-    /// Files that were written; none if there was no run.
-    pub files: Vec<PathBuf>,
-}
+pub type Studied = kit::Studied<Run>;
 
 /// Measures a plan and writes runs, table and page to a folder, which is made if it is missing.
 ///
@@ -65,21 +54,7 @@ pub fn run(
     out: &Path,
     observer: &mut StudyObserver<'_>,
 ) -> Result<Studied, StudyError> {
-    let folder = Folder::open(out)?;
-    let mut file = folder.begin_runs()?;
-    let mut runs = Vec::new();
-    let measured = measure::measure(plan, origin, observer, &mut |run| {
-        file.append(&run)?;
-        runs.push(run);
-        Ok(())
-    });
-    if runs.is_empty() {
-        file.discard()?;
-        return Ok(Studied { runs, is_complete: measured?, files: Vec::new() });
-    }
-    let is_complete = measured?;
-    let files = file.finish(&runs, &page(&runs)?)?.to_vec();
-    Ok(Studied { runs, is_complete, files })
+    kit::run::<OctreeStudy>(&plan.0, origin, out, observer)
 }
 
 /// Makes table and page again from a list of runs.
@@ -87,8 +62,13 @@ pub fn run(
 /// # Errors
 /// When the list cannot be read or has a damaged line, or the folder cannot be written or has files of something else.
 pub fn redo(list: &Path, out: &Path) -> Result<Studied, StudyError> {
-    let runs = read_runs(list)?;
-    let folder = Folder::open(out)?;
-    let files = folder.write(&runs, &page(&runs)?)?.to_vec();
-    Ok(Studied { runs, is_complete: true, files })
+    kit::redo::<OctreeStudy>(list, out)
+}
+
+/// Reads the records of an earlier study.
+///
+/// # Errors
+/// [`StudyError::Io`], or [`StudyError::Record`] with the first line that is no record of this study.
+pub fn read_runs(path: &Path) -> Result<Vec<Run>, StudyError> {
+    list::read_runs(path)
 }

@@ -1,14 +1,11 @@
-//! What is measured: groups of configurations whose frames are taken in turns.
-//!
-//! A group holds what a figure compares, so that a machine that becomes slower or warmer becomes so for all of it.
+//! What the octree study measures.
 use luxel_engine::{BackendChoice, QUALITIES, Quality, SphereAccel, SphereCloud};
 
 use super::field::SphereField;
-
 use super::record::Sweep;
+use super::study::OctreeStudy;
+use crate::kit::plan::{Plan as KitPlan, SEED};
 
-/// Seed of the spheres and of the random numbers.
-pub(crate) const SEED: u32 = 1;
 /// Deepest octree that is built; deeper ones that are asked for are held at this.
 pub(crate) const MAX_DEPTH: u32 = 20;
 /// The numbers of spheres of the report.
@@ -29,28 +26,10 @@ const LARGER_LEAVES: [u32; 4] = [2, 4, 8, 16];
 const QUICK_DEPTH_OF_LEAF_0: u32 = 5;
 
 /// A study to be made.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
-    /// In the order in which they are measured.
-    pub(crate) groups: Vec<Group>,
-    /// True if it is shortened.
-    pub(crate) quick: bool,
-    /// Most measured frames of a configuration.
-    pub(crate) frames: u32,
-    /// Turns that a configuration gets.
-    pub(crate) rounds: u32,
-}
+pub struct Plan(pub(crate) KitPlan<OctreeStudy>);
 
 /// Configurations that take turns.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Group {
-    pub(crate) sweep: Sweep,
-    pub(crate) backend: BackendChoice,
-    pub(crate) field: SphereField,
-    pub(crate) configurations: Vec<Configuration>,
-    /// Seconds of frames that each configuration may take.
-    pub(crate) secs_each: f64,
-}
+pub(crate) type Group = crate::kit::plan::Group<OctreeStudy>;
 
 /// What is varied.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -161,20 +140,13 @@ impl Plan {
     /// The same with other seconds of frames per configuration.
     #[must_use]
     pub fn with_secs_each(mut self, secs: f64) -> Self {
-        self.groups.iter_mut().for_each(|group| group.secs_each = secs);
+        self.0.set_secs_each(secs);
         self
     }
 
     /// Number of runs.
     pub fn run_count(&self) -> usize {
-        self.groups.iter().map(|group| group.configurations.len()).sum()
-    }
-
-    /// The backends that it measures, in their order.
-    pub(crate) fn backends(&self) -> Vec<BackendChoice> {
-        let mut backends: Vec<BackendChoice> = self.groups.iter().map(|group| group.backend).collect();
-        backends.dedup();
-        backends
+        self.0.run_count()
     }
 
     fn of(extent: &Extent, backends: &[BackendChoice]) -> Self {
@@ -195,7 +167,8 @@ impl Plan {
                 groups.extend(extent.depths_by_quality(*backend));
             }
         }
-        Self { groups, quick: extent.quick, frames: extent.frames, rounds: extent.rounds }
+        let Extent { quick, frames, rounds, .. } = *extent;
+        Self(KitPlan { groups, quick, frames, rounds })
     }
 }
 
@@ -207,8 +180,8 @@ impl Extent {
         count: u32,
         configurations: Vec<Configuration>,
     ) -> Group {
-        let field = SphereField::Random { count, seed: SEED };
-        Group { sweep, backend, field, configurations, secs_each: self.secs_each }
+        let scene = SphereField::Random { count, seed: SEED };
+        Group { sweep, backend, scene, configurations, secs_each: self.secs_each }
     }
 
     /// Height of the pictures of a sweep on a backend: on the GPU all are smaller by the same factor.
@@ -225,7 +198,7 @@ impl Extent {
         let one = |quality| ours(size, quality);
         let qualities = QUALITIES.iter().map(|row| one(row.quality)).collect();
         let materials = Group {
-            field: SphereField::Materials,
+            scene: SphereField::Materials,
             ..self.group(Sweep::Materials, backend, 3, vec![one(Quality::High)])
         };
         vec![
@@ -253,17 +226,18 @@ impl Extent {
     }
 
     /// Like the counts, but with spheres of very different sizes.
-    fn mixed(&self, backend: BackendChoice) -> impl Iterator<Item = Group> {
+    fn mixed(&self, backend: BackendChoice) -> Vec<Group> {
         let size = four_by_three(self.height(backend, self.cpu_height));
         let quality = Quality::Low;
-        let reports = [SphereAccel::OctreeSeed, SphereAccel::OctreeBase];
-        let mut all = vec![ours(size, quality), bvh(size, quality)];
-        all.extend(reports.map(|accel| cells(accel, MIXED_SPHERES, size, quality)));
-        let group = self.group(Sweep::Mixed, backend, MIXED_SPHERES, all);
-        LARGE_SPHERES.into_iter().map(move |large| Group {
-            field: SphereField::Mixed { count: MIXED_SPHERES, large, seed: SEED },
-            ..group.clone()
-        })
+        let mut groups = Vec::new();
+        for large in LARGE_SPHERES {
+            let mut all = vec![ours(size, quality), bvh(size, quality)];
+            let reports = [SphereAccel::OctreeSeed, SphereAccel::OctreeBase];
+            all.extend(reports.map(|accel| cells(accel, MIXED_SPHERES, size, quality)));
+            let scene = SphereField::Mixed { count: MIXED_SPHERES, large, seed: SEED };
+            groups.push(Group { scene, ..self.group(Sweep::Mixed, backend, MIXED_SPHERES, all) });
+        }
+        groups
     }
 
     fn grid(&self, backend: BackendChoice) -> Vec<Group> {
@@ -398,21 +372,21 @@ mod tests {
                 Sweep::Fraction,
                 Sweep::DepthQuality,
             ] {
-                assert!(plan.groups.iter().any(|group| group.sweep == sweep), "{sweep:?}");
+                assert!(plan.0.groups.iter().any(|group| group.sweep == sweep), "{sweep:?}");
             }
-            assert!(plan.groups.iter().all(|group| !group.configurations.is_empty()));
+            assert!(plan.0.groups.iter().all(|group| !group.configurations.is_empty()));
         }
     }
 
     #[test]
     fn the_full_plan_has_what_the_report_asks_for() {
         let plan = Plan::full(&BOTH);
-        let depth: Vec<_> = plan.groups.iter().filter(|g| g.sweep == Sweep::Depth).collect();
+        let depth: Vec<_> = plan.0.groups.iter().filter(|g| g.sweep == Sweep::Depth).collect();
         assert_eq!(depth.len(), 2 * COUNTS.len());
         assert!(depth.iter().all(|group| group.configurations.len() == 2 * 11 * 6));
         let has_naive = |group: &Group| group.configurations.iter().any(|c| c.accel == SphereAccel::Naive);
-        for group in plan.groups.iter().filter(|group| group.sweep == Sweep::Counts) {
-            assert_eq!(has_naive(group), group.field.count() <= 2000);
+        for group in plan.0.groups.iter().filter(|group| group.sweep == Sweep::Counts) {
+            assert_eq!(has_naive(group), group.scene.count() <= 2000);
         }
     }
 
@@ -420,7 +394,7 @@ mod tests {
     fn resolutions_differ_on_every_backend() {
         for (extent, backend) in [&FULL, &QUICK, &TINY].into_iter().flat_map(|e| BOTH.map(|b| (e, b))) {
             let plan = Plan::of(extent, &[backend]);
-            let grid = plan.groups.iter().filter(|group| group.sweep == Sweep::Grid);
+            let grid = plan.0.groups.iter().filter(|group| group.sweep == Sweep::Grid);
             let sizes: std::collections::BTreeSet<(u32, u32)> =
                 grid.flat_map(|group| &group.configurations).map(|c| c.size).collect();
             assert_eq!(sizes.len(), extent.grid_heights.len(), "{backend:?} {sizes:?}");
@@ -430,7 +404,7 @@ mod tests {
     #[test]
     fn depths_are_held_at_the_deepest_octree() {
         let plan = Plan::quick(&BOTH);
-        let all = plan.groups.iter().flat_map(|group| &group.configurations);
+        let all = plan.0.groups.iter().flat_map(|group| &group.configurations);
         let asked: Vec<u32> = all.clone().map(|c| c.asked_depth).collect();
         assert!(asked.contains(&4000) && all.clone().all(|c| c.cloud().max_depth <= MAX_DEPTH));
         assert_eq!((depth_for(1), depth_for(500), depth_for(1000), depth_for(1_000_000)), (1, 2, 3, 6));

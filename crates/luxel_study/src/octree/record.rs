@@ -1,5 +1,11 @@
 //! The record of a run: everything that a figure may ask, on one line of `runs.jsonl`.
+use luxel_engine::QUALITIES;
 use serde::{Deserialize, Serialize};
+
+use super::plan::MAX_DEPTH;
+use super::select::{STRUCTURES, label};
+use crate::kit::list::{count_in, known};
+use crate::kit::record::{Allowed, Common, Record};
 
 /// The value of [`Run::study`].
 pub const STUDY: &str = "octree";
@@ -131,6 +137,88 @@ pub struct Run {
     /// The picture as a PNG file in base64; only in `runs.jsonl`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub picture_png: Option<String>,
+}
+
+impl Record for Run {
+    /// The sweep (each takes turns of its own), structure, scene, tree and picture: another depth or smallest node
+    /// that led to the same tree.
+    type Repeat = (u32, String, u32, u32, u64, u32, u32, u32);
+
+    const STUDY: &'static str = STUDY;
+    const FORMAT: u32 = FORMAT;
+    const STRUCTURES: &'static [&'static str] = &STRUCTURES;
+
+    fn label(structure: &str) -> String {
+        label(structure)
+    }
+
+    fn common(&self) -> Common<'_> {
+        Common {
+            study: &self.study,
+            format: self.format,
+            planned_runs: self.planned_runs,
+            date: &self.date,
+            version: &self.version,
+            commit: &self.commit,
+            machine: &self.machine,
+            backend: &self.backend,
+            device: &self.device,
+            driver: &self.driver,
+            structure: &self.structure,
+            width: self.width,
+            height: self.height,
+            spp: self.spp,
+            frames: self.frames,
+            outliers: self.outliers,
+            frame_ms: self.frame_ms,
+            frame_ms_p25: self.frame_ms_p25,
+            frame_ms_p75: self.frame_ms_p75,
+            fps: self.fps,
+            rays: self.rays,
+            rays_per_sec: self.rays_per_sec,
+            frames_ms: &self.frames_ms,
+            picture_png: self.picture_png.as_deref(),
+        }
+    }
+
+    fn numbers(&self) -> Vec<(&'static str, f64, Allowed)> {
+        vec![
+            ("build_secs", self.build_secs, Allowed::NotNegative),
+            ("nodes_per_ray", self.nodes_per_ray, Allowed::NotNegative),
+            ("tests_per_ray", self.tests_per_ray, Allowed::NotNegative),
+            ("lambert_bounces", self.lambert_bounces, Allowed::NotNegative),
+            ("metal_bounces", self.metal_bounces, Allowed::NotNegative),
+            ("dielectric_bounces", self.dielectric_bounces, Allowed::NotNegative),
+            ("wrong_pixels", self.wrong_pixels.unwrap_or_default(), Allowed::Share),
+            ("wrong_rays", self.wrong_rays.unwrap_or_default(), Allowed::Share),
+            ("noise", self.noise.unwrap_or_default(), Allowed::NotNegative),
+        ]
+    }
+
+    fn check_rest(&self) -> Result<(), String> {
+        let qualities: Vec<&str> = QUALITIES.iter().map(|row| row.name).collect();
+        known("quality", &self.quality, &qualities)?;
+        count_in("spheres", self.spheres, u32::MAX)?;
+        if self.max_depth > MAX_DEPTH || self.max_depth > self.asked_depth {
+            return Err(format!("max_depth is out of range: {}", self.max_depth));
+        }
+        Ok(())
+    }
+
+    fn for_table(&self) -> Self {
+        Self { picture_png: None, frames_ms: Vec::new(), ..self.clone() }
+    }
+
+    fn repeat(&self) -> Option<Self::Repeat> {
+        let sweep = match self.sweep {
+            Sweep::Depth => 0,
+            Sweep::Fraction => 1,
+            Sweep::DepthQuality => 2,
+            _ => return None,
+        };
+        let structure = self.structure.clone();
+        Some((sweep, structure, self.spheres, self.nodes, self.bytes, self.width, self.height, self.spp))
+    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! Questions that figures ask of the records.
-use std::collections::{BTreeMap, BTreeSet};
-
 use super::record::{Run, Sweep};
-use super::stats::{geometric_mean, quantile};
-use super::verdict::{AtCount, Noise};
+pub(crate) use crate::kit::select::backend_name;
+use crate::kit::stats::geometric_mean;
+use crate::kit::verdict::AtCount;
 
 /// The structure that the report ends with: first leaf with a hit, eight orders.
 pub(crate) const REPORTS: &str = "octree-seed";
@@ -34,20 +33,8 @@ pub(crate) fn label(structure: &str) -> String {
     }
 }
 
-/// A backend in a caption.
-pub(crate) fn backend_name(backend: &str) -> &'static str {
-    if backend == "gpu" { "GPU" } else { "CPU" }
-}
-
-/// Part of the repeats whose difference is taken for noise.
-pub(crate) const NOISE_QUANTILE: f64 = 0.9;
-
-/// A selection of records, with the noise of all of them.
-#[derive(Clone)]
-pub(crate) struct Runs<'a> {
-    runs: Vec<&'a Run>,
-    noise: BTreeMap<&'a str, Noise>,
-}
+/// A selection of records of this study.
+pub(crate) type Runs<'a> = crate::kit::select::Runs<'a, Run>;
 
 /// An octree on a backend, with its runs.
 pub(crate) struct Subject<'a> {
@@ -56,32 +43,6 @@ pub(crate) struct Subject<'a> {
 }
 
 impl<'a> Runs<'a> {
-    pub(crate) fn all(runs: &'a [Run]) -> Self {
-        let all = Self { runs: runs.iter().collect(), noise: BTreeMap::new() };
-        let measured = |backend| Some((backend, repeat_spread(&all.on(backend))?));
-        let noise = all.backends().into_iter().filter_map(measured);
-        Self { noise: noise.collect(), ..all }
-    }
-
-    /// How far speeds may differ that are the same: the most of the backends of these runs. A backend on which
-    /// nothing was measured more than once is taken to be as noisy as the others.
-    pub(crate) fn noise(&self) -> Noise {
-        let most = |noises: &mut dyn Iterator<Item = &Noise>| {
-            Noise(noises.map(|noise| noise.0).fold(Noise::LEAST.0, f64::max))
-        };
-        let backends = self.backends();
-        if self.knows_noise() {
-            most(&mut backends.iter().filter_map(|backend| self.noise.get(backend)))
-        } else {
-            most(&mut self.noise.values())
-        }
-    }
-
-    /// True if the noise of the backends of these runs was measured.
-    pub(crate) fn knows_noise(&self) -> bool {
-        self.backends().iter().all(|backend| self.noise.contains_key(backend))
-    }
-
     /// The report's octree and ours on each backend, where they were measured.
     pub(crate) fn octrees(&self) -> Vec<Subject<'a>> {
         let mut all = Vec::new();
@@ -96,47 +57,12 @@ impl<'a> Runs<'a> {
         all
     }
 
-    pub(crate) fn filter(&self, is_wanted: impl Fn(&Run) -> bool) -> Self {
-        let runs = self.iter().filter(|run| is_wanted(run)).collect();
-        Self { runs, noise: self.noise.clone() }
-    }
-
     pub(crate) fn of(&self, sweep: Sweep) -> Self {
         self.filter(|run| run.sweep == sweep)
     }
 
-    pub(crate) fn on(&self, backend: &str) -> Self {
-        self.filter(|run| run.backend == backend)
-    }
-
-    pub(crate) fn with(&self, structure: &str) -> Self {
-        self.filter(|run| run.structure == structure)
-    }
-
     pub(crate) fn at(&self, spheres: u32) -> Self {
         self.filter(|run| run.spheres == spheres)
-    }
-
-    pub(crate) fn iter(&self) -> impl Iterator<Item = &'a Run> + '_ {
-        self.runs.iter().copied()
-    }
-
-    pub(crate) fn first(&self) -> Option<&'a Run> {
-        self.runs.first().copied()
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        self.runs.is_empty()
-    }
-
-    /// Different values of a field, in their order.
-    pub(crate) fn values<T: Ord>(&self, field: impl Fn(&'a Run) -> T) -> Vec<T> {
-        self.iter().map(field).collect::<BTreeSet<T>>().into_iter().collect()
-    }
-
-    /// Backends, the CPU first.
-    pub(crate) fn backends(&self) -> Vec<&'a str> {
-        self.values(|run| run.backend.as_str())
     }
 
     /// Numbers of spheres, rising.
@@ -149,18 +75,7 @@ impl<'a> Runs<'a> {
         self.values(|run| (run.spp, run.quality.as_str()))
     }
 
-    /// Structures that were measured, in the order of legends.
-    pub(crate) fn structures(&self) -> Vec<&'static str> {
-        let is_there = |name: &&str| self.iter().any(|run| run.structure == *name);
-        STRUCTURES.into_iter().filter(is_there).collect()
-    }
-
-    /// Frames per second, averaged as speeds are; `None` without a run.
-    pub(crate) fn fps(&self) -> Option<f64> {
-        self.speed(Limit::Off)
-    }
-
-    /// The same, with or without the limit.
+    /// Frames per second, averaged as speeds are, with or without the limit; `None` without a run.
     pub(crate) fn speed(&self, limit: Limit) -> Option<f64> {
         let most = if limit == Limit::On { FPS_LIMIT } else { f64::MAX };
         geometric_mean(&self.iter().map(|run| run.fps.min(most)).collect::<Vec<_>>())
@@ -174,33 +89,27 @@ impl<'a> Runs<'a> {
     }
 }
 
-/// How far repeated measurements lie apart: the same tree, size and quality within one sweep, whose structures take
-/// turns, measured again because another depth or smallest node led to it. `None` without a repeat.
-fn repeat_spread(runs: &Runs<'_>) -> Option<Noise> {
-    let mut repeats: BTreeMap<_, Vec<f64>> = BTreeMap::new();
-    for run in runs.iter() {
-        let sweep = match run.sweep {
-            Sweep::Depth => 0,
-            Sweep::Fraction => 1,
-            Sweep::DepthQuality => 2,
-            _ => continue,
-        };
-        let tree = (run.structure.as_str(), run.spheres, run.nodes, run.bytes);
-        repeats.entry((sweep, tree, run.width, run.height, run.spp)).or_default().push(run.fps);
+/// The setting of a sweep in words: `low quality (4 samples, depth 4), 96x72, CPU`.
+pub(crate) fn setting(run: Option<&Run>) -> String {
+    match run {
+        None => "not measured".to_owned(),
+        Some(run) => format!(
+            "{} quality ({} samples, depth {}), {}x{}, {}",
+            run.quality,
+            run.spp,
+            run.bounces,
+            run.width,
+            run.height,
+            backend_name(&run.backend)
+        ),
     }
-    let mut spreads = Vec::new();
-    for speeds in repeats.values() {
-        for (i, a) in speeds.iter().enumerate() {
-            spreads.extend(speeds[..i].iter().map(|b| (a / b).max(b / a) - 1.0));
-        }
-    }
-    quantile(&spreads, NOISE_QUANTILE).map(|spread| Noise(spread.max(Noise::LEAST.0)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::record::example;
     use super::*;
+    use crate::kit::verdict::Noise;
 
     fn repeat(sweep: Sweep, nodes: u32, fps: f64) -> Run {
         Run { sweep, nodes, fps, ..example() }

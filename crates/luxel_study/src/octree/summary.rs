@@ -1,26 +1,15 @@
 //! The table at the top of the page: the machine, and what came out.
-use super::figure::{Figure, Table};
 use super::record::Sweep;
 use super::select::{NAIVE, OURS, REPORTS, Runs, backend_name};
-use super::text::{count, list, percent, short, times};
-use super::verdict::{Answer, crossover_text};
+use crate::kit::figure::{Figure, Table};
+use crate::kit::page::{machine_rows, tally};
+use crate::kit::text::{count, percent, short, times};
+use crate::kit::verdict::crossover_text;
 
 /// What is known in a few lines.
 pub(crate) fn summary(runs: &Runs<'_>, figures: &[Figure]) -> Table {
-    let mut rows = Vec::new();
+    let mut rows = machine_rows(runs);
     let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
-    row("Machine", list(runs.values(|run| run.machine.as_str())));
-    row("Luxel", list(runs.values(|run| format!("{}, commit {}", run.version, run.commit))));
-    row("Date", list(runs.values(|run| run.date.as_str())));
-    row("Runs", format!("{}, {} frames", runs.iter().count(), frames(runs)));
-    for backend in runs.backends() {
-        let on = runs.on(backend);
-        row(backend_name(backend), list(on.values(|run| device(&run.device, &run.driver))));
-        row(
-            &format!("Noise on the {}", backend_name(backend)),
-            format!("speeds that differ by less than {} cannot be told apart", percent(on.noise().0)),
-        );
-    }
     let counts = runs.of(Sweep::Counts);
     for backend in counts.backends() {
         for (name, value) in findings(&counts.on(backend), &runs.of(Sweep::Mixed).on(backend)) {
@@ -31,14 +20,6 @@ pub(crate) fn summary(runs: &Runs<'_>, figures: &[Figure]) -> Table {
     Table { head: Vec::new(), rows }
 }
 
-fn frames(runs: &Runs<'_>) -> String {
-    count(runs.iter().map(|run| u64::from(run.frames)).sum())
-}
-
-fn device(device: &str, driver: &str) -> String {
-    if driver.is_empty() { device.to_owned() } else { format!("{device}, driver {driver}") }
-}
-
 /// Crossover, advantage, price of the heuristic and the fastest structure of a backend.
 fn findings(on: &Runs<'_>, mixed: &Runs<'_>) -> Vec<(&'static str, String)> {
     let mut found = Vec::new();
@@ -47,7 +28,7 @@ fn findings(on: &Runs<'_>, mixed: &Runs<'_>) -> Vec<(&'static str, String)> {
         ("Crossover: our octree becomes faster than naive", OURS),
         ("Crossover: the report's octree becomes faster than naive", REPORTS),
     ] {
-        found.push((name, crossover_text(small.noise(), &small.ratios(structure, NAIVE))));
+        found.push((name, crossover_text(small.noise(), &small.ratios(structure, NAIVE), "spheres")));
     }
     let advantage = small.ratios(OURS, NAIVE);
     if let Some((spheres, ratio)) = advantage.last() {
@@ -94,14 +75,4 @@ fn findings(on: &Runs<'_>, mixed: &Runs<'_>) -> Vec<(&'static str, String)> {
         }
     }
     found
-}
-
-/// How many claims hold.
-fn tally(figures: &[Figure]) -> String {
-    let of = |answer: Answer| {
-        let count = figures.iter().filter(|figure| figure.verdict.answer == answer).count();
-        (count > 0).then(|| format!("{}: {count}", answer.name()))
-    };
-    let with_claim = Answer::ALL.into_iter().filter(|answer| *answer != Answer::NoClaim);
-    list(with_claim.filter_map(of))
 }

@@ -1,6 +1,6 @@
 //! Best settings, with those that cannot be told from them.
-use super::super::text::{count, list};
-use super::super::verdict::{Case, Noise, Order};
+use crate::kit::text::{count, list};
+use crate::kit::verdict::{Case, Noise, Order};
 
 /// The best settings of a number of spheres.
 #[derive(Clone, Debug, PartialEq)]

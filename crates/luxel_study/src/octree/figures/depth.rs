@@ -1,14 +1,14 @@
 //! Figures 15, 16, 21 and 27: how deep the octree should be.
 //!
 //! All of it for the report's octree and for ours, on each backend that was measured.
-use super::super::chart::{Chart, Ink, Kind};
-use super::super::figure::{Figure, Part, setting};
 use super::super::record::{Run, Sweep};
-use super::super::select::{FPS_LIMIT, Limit, Runs, Subject};
-use super::super::text::{list, times};
-use super::super::verdict::{AtCount, Case, Verdict, ratios_text, spread};
+use super::super::select::{FPS_LIMIT, Limit, Runs, Subject, setting};
 use super::best::{Best, best_grows, best_text};
 use super::{depth_ink, fps_over_counts, over_counts, series, structure_ink};
+use crate::kit::chart::{Chart, Ink, Kind};
+use crate::kit::figure::{Figure, Part};
+use crate::kit::text::{list, times};
+use crate::kit::verdict::{AtCount, Case, Verdict, ratios_text, spread};
 
 /// The report's best depths with its limit of frames per second: spheres, depth.
 const REPORTS_BEST: [(u32, u32); 2] = [(500, 1), (1000, 10)];
@@ -223,7 +223,7 @@ fn best_depths(ones: &Runs<'_>) -> Figure {
         let best = best_by_count(&runs, Limit::Off);
         let at =
             |count| best.iter().find(|best| best.spheres == count).map(|best| f64::from(best.smallest()));
-        let ink = runs.first().map_or(depth_ink(0), |run| structure_ink(&run.structure, &run.backend));
+        let ink = runs.first().map_or(depth_ink(0), |run| structure_ink::<Run>(&run.structure, &run.backend));
         lines.push(series(name.clone(), ink, &counts, at));
         cases.extend(best_grows(&best));
         reasons += &format!("{name}: {}. ", best_text(&best));

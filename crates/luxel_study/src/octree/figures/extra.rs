@@ -1,10 +1,10 @@
 //! Figures 23 and 24: what the report lacks. Memory, time to build.
-use super::super::chart::Kind;
-use super::super::figure::{Figure, Part};
 use super::super::record::{Run, Sweep};
 use super::super::select::{NAIVE, OURS, REPORTS, Runs, label};
-use super::super::verdict::{Case, Verdict, ratios_text};
 use super::{over_counts, series, structure_ink};
+use crate::kit::chart::Kind;
+use crate::kit::figure::{Figure, Part};
+use crate::kit::verdict::{Case, Verdict, ratios_text};
 
 pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     let counts = runs.of(Sweep::Counts);
@@ -19,7 +19,7 @@ fn of_structures(runs: &Runs<'_>, y: &'static str, value: impl Fn(&Run) -> f64) 
     let lines = runs.structures().into_iter().filter(|name| *name != "octree-base").map(|name| {
         let name_shown =
             if name == REPORTS { "octree of cells (the report's)".to_owned() } else { label(name) };
-        series(name_shown, structure_ink(name, "cpu"), &counts, |count| {
+        series(name_shown, structure_ink::<Run>(name, "cpu"), &counts, |count| {
             runs.with(name).at(count).first().map(&value)
         })
     });

@@ -3,13 +3,13 @@
 //! The settings are varied over different ranges (height little, spheres much), so that their effects on the frames
 //! per second cannot be compared as they are. Each is given for one doubling: the slope of least squares of the
 //! logarithms.
-use super::super::figure::{Figure, Heat, Part};
 use super::super::record::{Run, Sweep};
 use super::super::select::{NAIVE, OURS, REPORTS, Runs, backend_name, label};
-use super::super::stats::factor_per_doubling;
-use super::super::text::{count, times};
-use super::super::verdict::{Case, Verdict};
 use super::count_names;
+use crate::kit::figure::{Figure, Heat, Part};
+use crate::kit::stats::factor_per_doubling;
+use crate::kit::text::{count, times};
+use crate::kit::verdict::{Case, Verdict};
 
 pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     vec![figure(runs, 7, "Naive heat map", &[NAIVE]), figure(runs, 8, "Octree heat map", &[OURS, REPORTS])]

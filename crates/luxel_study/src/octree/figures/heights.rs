@@ -1,10 +1,10 @@
 //! Figures 13 and 14: naive against octree, by the resolution.
-use super::super::chart::{Chart, Kind};
-use super::super::figure::{Figure, Part};
 use super::super::record::Sweep;
 use super::super::select::{NAIVE, OURS, REPORTS, Runs, backend_name};
-use super::super::verdict::{Case, Verdict, range_text};
 use super::{ratio_table, structure_lines};
+use crate::kit::chart::{Chart, Kind};
+use crate::kit::figure::{Figure, Part};
+use crate::kit::verdict::{Case, Verdict, range_text};
 
 pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     let grid = runs.of(Sweep::Grid);

@@ -1,11 +1,11 @@
 //! Figures 26 and 28: scenes far beyond the report's, and the number of spheres from which an octree pays.
-use super::super::chart::Kind;
-use super::super::figure::{Figure, setting};
 use super::super::record::Sweep;
-use super::super::select::{NAIVE, OURS, REPORTS, Runs, backend_name};
-use super::super::text::{count, times};
-use super::super::verdict::{AtCount, Case, Noise, Verdict, crossover, crossover_text, growth};
+use super::super::select::{NAIVE, OURS, REPORTS, Runs, backend_name, setting};
 use super::{over_counts, ratios_of, structure_lines};
+use crate::kit::chart::Kind;
+use crate::kit::figure::Figure;
+use crate::kit::text::{count, times};
+use crate::kit::verdict::{AtCount, Case, Noise, Verdict, crossover, crossover_text, growth};
 
 /// From this number of spheres on an octree is expected to win.
 const EXPECTED_CROSSOVER: u32 = 250;
@@ -65,7 +65,7 @@ fn crossovers(runs: &Runs<'_>) -> Figure {
     for of in ratios_of(&small, &[OURS, REPORTS, "octree-base", "bvh"], NAIVE) {
         let noise = small.on(&of.backend).noise();
         lines.push(of.line(&counts));
-        reasons += &format!("{}: {}. ", of.name(), crossover_text(noise, &of.ratios));
+        reasons += &format!("{}: {}. ", of.name(), crossover_text(noise, &of.ratios, "spheres"));
         if of.structure == OURS {
             cases.extend(expectations(noise, &of.ratios));
         }

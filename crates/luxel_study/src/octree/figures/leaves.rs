@@ -1,13 +1,13 @@
 //! Figures 20 and 25: how few spheres a node should have before it is left whole.
-use super::super::chart::{Ink, Kind};
-use super::super::figure::{Figure, Part};
 use super::super::record::{Run, Sweep};
 use super::super::select::{Runs, Subject};
-use super::super::stats::geometric_mean;
-use super::super::text::times;
-use super::super::verdict::{AtCount, Case, Noise, Verdict, ratios_text};
 use super::best::{Best, best_text};
 use super::{over_counts, series};
+use crate::kit::chart::{Ink, Kind};
+use crate::kit::figure::{Figure, Part};
+use crate::kit::stats::geometric_mean;
+use crate::kit::text::times;
+use crate::kit::verdict::{AtCount, Case, Noise, Verdict, ratios_text};
 
 /// The largest of the report's small scenes, and of its medium ones.
 const SMALL: u32 = 100;

@@ -14,11 +14,12 @@ mod tests;
 mod versus;
 mod wrong;
 
-use super::chart::{Chart, Ink, Kind, Series};
-use super::figure::{Figure, Part, Table};
-use super::select::{Runs, STRUCTURES, backend_name, label};
-use super::text::{count, times};
-use super::verdict::AtCount;
+use super::record::Run;
+use super::select::{Runs, backend_name};
+use crate::kit::chart::{Chart, Ink, Kind, Series};
+use crate::kit::draw::{count_names, ratio_table, series, structure_ink, structure_lines};
+use crate::kit::figure::{Figure, Part};
+use crate::kit::verdict::AtCount;
 
 /// The last figure of the report.
 pub(crate) const LAST_OF_REPORT: u32 = 21;
@@ -42,39 +43,9 @@ pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     figures
 }
 
-/// A series over numbers of spheres, or any other setting.
-fn series<T: Copy>(
-    name: impl Into<String>,
-    ink: Ink,
-    over: &[T],
-    value: impl Fn(T) -> Option<f64>,
-) -> Series {
-    Series { name: name.into(), ink, values: over.iter().map(|x| value(*x)).collect() }
-}
-
-/// The colour of a structure, with gaps on the GPU.
-fn structure_ink(structure: &str, backend: &str) -> Ink {
-    let index = STRUCTURES.iter().position(|name| *name == structure).unwrap_or(STRUCTURES.len());
-    Ink::distinct(index).dashed(backend == "gpu")
-}
-
 /// The colour of a depth.
 fn depth_ink(depth: u32) -> Ink {
     Ink::scale(f64::from(depth) / DEEPEST_INK)
-}
-
-/// A line per structure of one backend.
-fn structure_lines<T: Copy>(
-    runs: &Runs<'_>,
-    over: &[T],
-    value: impl Fn(&Runs<'_>, T) -> Option<f64>,
-) -> Vec<Series> {
-    let backend = runs.first().map_or("cpu", |run| run.backend.as_str());
-    let line = |name: &'static str| {
-        let of_it = runs.with(name);
-        series(label(name), structure_ink(name, backend), over, |x| value(&of_it, x))
-    };
-    runs.structures().into_iter().map(line).collect()
 }
 
 /// A structure's speed against another's, by the number of spheres, on one backend.
@@ -94,7 +65,9 @@ impl Ratios {
     }
 
     fn line(&self, counts: &[u32]) -> Series {
-        series(self.name(), structure_ink(self.structure, &self.backend), counts, |count| self.at(count))
+        series(self.name(), structure_ink::<Run>(self.structure, &self.backend), counts, |count| {
+            self.at(count)
+        })
     }
 }
 
@@ -110,21 +83,6 @@ fn ratios_of(runs: &Runs<'_>, structures: &[&'static str], slow: &str) -> Vec<Ra
         }
     }
     all
-}
-
-/// Ratios over columns as a table.
-fn ratio_table(corner: &str, columns: Vec<String>, rows: Vec<(String, Vec<Option<f64>>)>) -> Part {
-    let said = |ratio: Option<f64>| ratio.map_or_else(|| "–".to_owned(), times);
-    let row = |(name, ratios): (String, Vec<Option<f64>>)| {
-        std::iter::once(name).chain(ratios.into_iter().map(said)).collect()
-    };
-    let head = std::iter::once(corner.to_owned()).chain(columns).collect();
-    Part::Table(Table { head, rows: rows.into_iter().map(row).collect() })
-}
-
-/// Numbers of spheres as categories.
-fn count_names(counts: &[u32]) -> Vec<String> {
-    counts.iter().map(|spheres| count(u64::from(*spheres))).collect()
 }
 
 /// Frames per second over numbers of spheres, as lines.

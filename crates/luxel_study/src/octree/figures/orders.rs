@@ -5,9 +5,10 @@
 //! lies. An order is front to back if no child comes after one that it may hide: along every axis in which two
 //! children differ, the ray reaches the one that comes first not later than the other, unless neither is before the
 //! other in all of them.
-use super::super::figure::{Figure, Part, Table};
-use super::super::text::list;
-use super::super::verdict::{Case, Verdict};
+use super::super::cube::cube;
+use crate::kit::figure::{Figure, Part, Table};
+use crate::kit::text::list;
+use crate::kit::verdict::{Case, Verdict};
 
 /// The report's order for the red direction of its figure 3, in its numbering (bits z, x, y).
 const REPORTS_RED_ORDER: [u32; 8] = [3, 1, 2, 0, 7, 5, 6, 4];
@@ -49,7 +50,7 @@ pub(crate) fn figure() -> Figure {
                 .to_owned(),
         ),
         verdict: Verdict::of(&[sound == 8, reports, corners].map(Case::from), because),
-        parts: vec![Part::Cube, Part::Table(table(&ours))],
+        parts: vec![Part::Drawing(cube().into_string()), Part::Table(table(&ours))],
     }
 }
 

@@ -1,9 +1,9 @@
 //! Figures 1, 2, 4, 5 and 6: pictures.
-use super::super::figure::{Figure, Part, setting};
 use super::super::record::{Run, Sweep};
-use super::super::select::Runs;
-use super::super::text::{percent, short};
-use super::super::verdict::Verdict;
+use super::super::select::{Runs, setting};
+use crate::kit::draw::{picture, without_claim};
+use crate::kit::figure::Figure;
+use crate::kit::text::{percent, short};
 
 /// Numbers, names and settings (samples, depth) of the report's qualities.
 const QUALITIES: [(u32, &str, u32, u32); 3] = [(4, "low", 4, 4), (5, "standard", 16, 8), (6, "high", 32, 16)];
@@ -14,11 +14,6 @@ pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     figures
 }
 
-fn picture(run: Option<&Run>, alt: &str) -> Vec<Part> {
-    let picture = run.and_then(|run| run.picture_png.clone());
-    picture.map(|png| Part::Picture(png, alt.to_owned())).into_iter().collect()
-}
-
 /// What light met in a frame; `None` without a run.
 fn bounces_text(run: Option<&Run>) -> Option<String> {
     let run = run?;
@@ -27,10 +22,6 @@ fn bounces_text(run: Option<&Run>) -> Option<String> {
     Some(format!(
         "A frame has {lambert} bounces off Lambert, {metal} off metal and {dielectric} off dielectric surfaces."
     ))
-}
-
-fn without_claim(because: Option<String>) -> Verdict {
-    because.map_or_else(Verdict::not_measured, Verdict::no_claim)
 }
 
 fn materials(runs: &Runs<'_>) -> Figure {
@@ -92,8 +83,8 @@ fn cost_text(run: Option<&Run>, below: Option<&Run>) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::super::super::record::example;
-    use super::super::super::verdict::Answer;
     use super::*;
+    use crate::kit::verdict::Answer;
 
     #[test]
     fn a_quality_is_set_beside_the_one_below() {

@@ -1,14 +1,14 @@
 //! Figures 17 to 19: depths 0 to 5, with a smallest node of 0 and of 1.
-use super::super::chart::Kind;
-use super::super::figure::{Figure, Part};
 use super::super::record::{Run, Sweep};
 use super::super::select::{FPS_LIMIT, Limit, Runs, Subject};
-use super::super::stats::geometric_mean;
-use super::super::text::{count, times};
-use super::super::verdict::{AtCount, Case, Verdict, growth, ratios_text, spread};
 use super::best::{Best, best_grows, best_text};
 use super::depth::{as_reported, speeds};
 use super::{depth_ink, over_counts, series};
+use crate::kit::chart::Kind;
+use crate::kit::figure::{Figure, Part};
+use crate::kit::stats::geometric_mean;
+use crate::kit::text::{count, times};
+use crate::kit::verdict::{AtCount, Case, Verdict, growth, ratios_text, spread};
 
 /// Depths up to this.
 const SMALL_DEPTH: u32 = 5;

@@ -1,7 +1,7 @@
 //! Answers to made-up records, in both directions.
 use super::super::record::{Run, Sweep, example};
-use super::super::verdict::Answer;
 use super::*;
+use crate::kit::verdict::Answer;
 
 const OCTREES: [&str; 2] = ["octree", "octree-seed"];
 

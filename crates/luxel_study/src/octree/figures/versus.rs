@@ -1,11 +1,11 @@
 //! Figures 9 to 12: naive against octree, by the number of spheres.
-use super::super::chart::Kind;
-use super::super::figure::{Figure, Part, setting};
 use super::super::record::Sweep;
-use super::super::select::{NAIVE, OURS, REPORTS, Runs, backend_name};
-use super::super::text::{count, list, times};
-use super::super::verdict::{Case, Verdict, growth, ratios_text};
+use super::super::select::{NAIVE, OURS, REPORTS, Runs, backend_name, setting};
 use super::{Ratios, count_names, fps_over_counts, over_counts, ratio_table, ratios_of, structure_lines};
+use crate::kit::chart::Kind;
+use crate::kit::figure::{Figure, Part};
+use crate::kit::text::{count, list, times};
+use crate::kit::verdict::{Case, Verdict, growth, ratios_text};
 
 /// From this number of spheres on the report calls its scenes larger.
 const LARGER: u32 = 500;

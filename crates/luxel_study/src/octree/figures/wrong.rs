@@ -1,12 +1,12 @@
 //! Figure 22: wrong pixels and rays of the report's heuristic against its time.
-use super::super::chart::{Chart, Kind, Series};
-use super::super::figure::{Figure, Part, Table};
 use super::super::plan::MIXED_SPHERES;
 use super::super::record::{Run, Sweep};
 use super::super::select::{OURS, REPORTS, Runs, backend_name};
-use super::super::text::{count, list, percent, short, times};
-use super::super::verdict::{Case, Verdict};
 use super::{series, structure_ink};
+use crate::kit::chart::{Chart, Kind, Series};
+use crate::kit::figure::{Figure, Part, Table};
+use crate::kit::text::{count, list, percent, short, times};
+use crate::kit::verdict::{Case, Verdict};
 
 /// Draws the rays of a backend beside its pixels.
 const RAYS_INK: &str = "octree-base";
@@ -109,7 +109,7 @@ fn line(
     value: impl Fn(&Scene<'_>) -> Option<f64>,
 ) -> Series {
     let at: Vec<usize> = (0..scenes.len()).collect();
-    series(name, structure_ink(structure, backend), &at, |i| value(&scenes[i]))
+    series(name, structure_ink::<Run>(structure, backend), &at, |i| value(&scenes[i]))
 }
 
 /// Shares of pixels and rays in percent.

@@ -1,5 +1,5 @@
-//! The files of a study: `runs.jsonl`, a line per run; `runs.csv`, the same without pictures and single frames;
-//! `octree.html`.
+//! The files of a study: `runs.jsonl`, a line per run; `runs.csv`, the same without pictures and single frames; its
+//! page.
 //!
 //! Runs are appended to `runs.jsonl.part` as they are measured; a lock keeps other studies from it. When the study is
 //! over, page and table are written beside their places, and then all take their names. What an earlier study left,
@@ -7,64 +7,65 @@
 //! are: they are an error.
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Write as _};
+use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
 use super::list::read_runs;
-use super::page::TITLE;
-use super::record::Run;
+use super::record::Record;
+use super::study::Study;
 use crate::StudyError;
 
 /// Records, a JSON object per line.
 pub const RUNS: &str = "runs.jsonl";
 /// The records as a table.
 pub const TABLE: &str = "runs.csv";
-/// The page.
-pub const PAGE: &str = "octree.html";
 const PART: &str = "runs.jsonl.part";
 /// How every table of a study begins, whatever columns follow.
 const TABLE_BEGIN: &str = "study,format,sweep,";
-/// Bytes at the beginning of a file that say what it is.
-const BEGIN_BYTES: u64 = 1000;
+/// Bytes at the beginning of a file that say what it is: more than the head of a table.
+const BEGIN_BYTES: u64 = 4000;
 
 /// A folder that a study is being written to.
-pub(crate) struct Folder {
+pub(super) struct Folder<S: Study> {
     path: PathBuf,
+    study: PhantomData<S>,
 }
 
-impl Folder {
+impl<S: Study> Folder<S> {
     /// Makes the folder if it is missing, and finds out whether files can be made in it and whether those that are
     /// there may be replaced.
-    pub(crate) fn open(path: &Path) -> Result<Self, StudyError> {
-        let folder = Self { path: path.to_owned() };
+    pub(super) fn open(path: &Path) -> Result<Self, StudyError> {
+        let folder = Self { path: path.to_owned(), study: PhantomData };
         if let Some(file) = path.ancestors().find(|place| place.is_file()) {
             return Err(StudyError::NotAFolder(file.to_owned()));
         }
         fs::create_dir_all(path).map_err(|source| folder.error("", source))?;
         new_file(path).map_err(|source| folder.error("", source))?;
-        for name in [RUNS, TABLE, PAGE, PART] {
+        for name in [RUNS, TABLE, S::PAGE, PART] {
             if path.join(name).is_dir() {
                 return Err(folder.error(name, io::Error::from(io::ErrorKind::IsADirectory)));
             }
         }
-        let is_of_study = read_runs(&path.join(RUNS)).is_ok();
-        let title = format!("<title>{TITLE}</title>");
-        for (name, mark) in [(TABLE, TABLE_BEGIN), (PAGE, title.as_str())] {
+        let is_of_study = read_runs::<S::Run>(&path.join(RUNS)).is_ok();
+        let title = format!("<title>{}</title>", S::TITLE);
+        let row = format!("\n{},", S::Run::STUDY);
+        for (name, marks) in [(TABLE, [TABLE_BEGIN, row.as_str()]), (S::PAGE, [title.as_str(), ""])] {
             let file = path.join(name);
-            if !is_of_study && file.exists() && !begins_with(&file, mark) {
-                return Err(StudyError::Foreign(file));
+            if !is_of_study && file.exists() && !begins_with(&file, &marks) {
+                return Err(StudyError::Foreign { file, study: S::KIND });
             }
         }
         Ok(folder)
     }
 
-    /// Begins a list of runs. Records that are there already must be those of an octree study: nobody else's file of
+    /// Begins a list of runs. Records that are there already must be those of the same study: nobody else's file of
     /// that name is touched.
-    pub(crate) fn begin_runs(&self) -> Result<RunsFile<'_>, StudyError> {
+    pub(super) fn begin_runs(&self) -> Result<RunsFile<'_, S>, StudyError> {
         let there = self.path.join(RUNS);
         if there.exists() {
-            read_runs(&there)?;
+            read_runs::<S::Run>(&there)?;
         }
         let mut file = self.lock_part()?;
         if file.metadata().map_err(|source| self.error(PART, source))?.len() > 0 {
@@ -86,15 +87,15 @@ impl Folder {
     }
 
     /// Writes page and table, both or none.
-    pub(crate) fn write(&self, runs: &[Run], page: &str) -> Result<[PathBuf; 2], StudyError> {
-        let (page, table) = (self.beside(PAGE, page.as_bytes())?, self.beside(TABLE, &self.table(runs)?)?);
-        Ok([self.place(page, PAGE)?, self.place(table, TABLE)?])
+    pub(super) fn write(&self, runs: &[S::Run], page: &str) -> Result<[PathBuf; 2], StudyError> {
+        let (page, table) = (self.beside(S::PAGE, page.as_bytes())?, self.beside(TABLE, &self.table(runs)?)?);
+        Ok([self.place(page, S::PAGE)?, self.place(table, TABLE)?])
     }
 
-    fn table(&self, runs: &[Run]) -> Result<Vec<u8>, StudyError> {
+    fn table(&self, runs: &[S::Run]) -> Result<Vec<u8>, StudyError> {
         let mut table = csv::Writer::from_writer(Vec::new());
         for run in runs {
-            table.serialize(Run { picture_png: None, frames_ms: Vec::new(), ..run.clone() })?;
+            table.serialize(run.for_table())?;
         }
         table.into_inner().map_err(|error| self.error(TABLE, error.into_error()))
     }
@@ -142,34 +143,35 @@ fn new_file(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// True if a mark stands at the beginning of a file, or not far from it.
-fn begins_with(path: &Path, mark: &str) -> bool {
+/// True if marks stand at the beginning of a file, or not far from it.
+fn begins_with(path: &Path, marks: &[&str]) -> bool {
     let mut begin = Vec::new();
     let read = File::open(path).and_then(|file| file.take(BEGIN_BYTES).read_to_end(&mut begin));
-    read.is_ok() && String::from_utf8_lossy(&begin).contains(mark)
+    let begin = String::from_utf8_lossy(&begin);
+    read.is_ok() && marks.iter().all(|mark| begin.contains(mark))
 }
 
 /// The list of runs as it grows.
-pub(crate) struct RunsFile<'a> {
-    folder: &'a Folder,
+pub(super) struct RunsFile<'a, S: Study> {
+    folder: &'a Folder<S>,
     file: File,
 }
 
-impl RunsFile<'_> {
+impl<S: Study> RunsFile<'_, S> {
     /// Appends a run.
-    pub(crate) fn append(&mut self, run: &Run) -> Result<(), StudyError> {
+    pub(super) fn append(&mut self, run: &S::Run) -> Result<(), StudyError> {
         let line = serde_json::to_string(run)? + "\n";
         self.file.write_all(line.as_bytes()).map_err(|source| self.folder.error(PART, source))
     }
 
     /// Removes it: nothing was measured.
-    pub(crate) fn discard(self) -> Result<(), StudyError> {
+    pub(super) fn discard(self) -> Result<(), StudyError> {
         let path = self.folder.path.join(PART);
         fs::remove_file(path).map_err(|source| self.folder.error(PART, source))
     }
 
     /// Writes page and table, and gives all three their names.
-    pub(crate) fn finish(self, runs: &[Run], page: &str) -> Result<[PathBuf; 3], StudyError> {
+    pub(super) fn finish(self, runs: &[S::Run], page: &str) -> Result<[PathBuf; 3], StudyError> {
         let Self { folder, file } = self;
         file.sync_all().map_err(|source| folder.error(PART, source))?;
         let [page, table] = folder.write(runs, page)?;
@@ -184,10 +186,11 @@ impl RunsFile<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::example;
     use super::*;
+    use crate::octree::{OctreeStudy, read_runs};
+    use crate::octree::{PAGE, Run, example, page};
 
-    fn make(store: &Folder, runs: &[Run]) -> [PathBuf; 3] {
+    fn make(store: &Folder<OctreeStudy>, runs: &[Run]) -> [PathBuf; 3] {
         let mut file = store.begin_runs().unwrap();
         runs.iter().for_each(|run| file.append(run).unwrap());
         file.finish(runs, "page").unwrap()
@@ -203,7 +206,7 @@ mod tests {
     #[test]
     fn runs_come_back_from_both_files() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Folder::open(folder.path()).unwrap();
+        let store = Folder::<OctreeStudy>::open(folder.path()).unwrap();
         let frames_ms = vec![10.0; 51];
         let runs = [
             Run { frames_ms, ..example() },
@@ -219,7 +222,7 @@ mod tests {
     #[test]
     fn every_study_before_is_kept_and_what_one_that_was_cut_short_left() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Folder::open(folder.path()).unwrap();
+        let store = Folder::<OctreeStudy>::open(folder.path()).unwrap();
         for spheres in 1..=3 {
             make(&store, &[Run { spheres, ..example() }]);
         }
@@ -237,7 +240,7 @@ mod tests {
     #[test]
     fn two_studies_do_not_share_a_list() {
         let folder = tempfile::tempdir().unwrap();
-        let store = Folder::open(folder.path()).unwrap();
+        let store = Folder::<OctreeStudy>::open(folder.path()).unwrap();
         let first = store.begin_runs().unwrap();
         assert!(matches!(store.begin_runs(), Err(StudyError::Busy(_))));
         first.discard().unwrap();
@@ -251,13 +254,13 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let foreign = folder.path().join(name);
             fs::write(&foreign, "sales").unwrap();
-            let message = Folder::open(folder.path()).err().unwrap().to_string();
+            let message = Folder::<OctreeStudy>::open(folder.path()).err().unwrap().to_string();
             assert!(message.contains(name), "{message}");
             fs::write(folder.path().join(RUNS), serde_json::to_string(&example()).unwrap()).unwrap();
-            Folder::open(folder.path()).unwrap();
+            Folder::<OctreeStudy>::open(folder.path()).unwrap();
         }
         let folder = tempfile::tempdir().unwrap();
-        let store = Folder::open(folder.path()).unwrap();
+        let store = Folder::<OctreeStudy>::open(folder.path()).unwrap();
         let list = folder.path().join(RUNS);
         fs::write(&list, "{\"study\":\"sales\"}\n").unwrap();
         assert!(matches!(store.begin_runs(), Err(StudyError::Record { line: 1, .. })));
@@ -268,8 +271,8 @@ mod tests {
     fn page_and_table_of_a_study_may_be_made_again() {
         let folder = tempfile::tempdir().unwrap();
         for _ in 0..2 {
-            let store = Folder::open(folder.path()).unwrap();
-            store.write(&[example()], &super::super::page::page(&[example()]).unwrap()).unwrap();
+            let store = Folder::<OctreeStudy>::open(folder.path()).unwrap();
+            store.write(&[example()], &page(&[example()]).unwrap()).unwrap();
         }
         assert_eq!(names(folder.path()), [PAGE, TABLE]);
     }
@@ -280,11 +283,11 @@ mod tests {
         let file = folder.path().join("file");
         fs::write(&file, "").unwrap();
         for path in [file.join("out"), file] {
-            let message = Folder::open(&path).err().unwrap().to_string();
+            let message = Folder::<OctreeStudy>::open(&path).err().unwrap().to_string();
             assert!(message.ends_with("file is not a folder"), "{message}");
         }
         fs::create_dir_all(folder.path().join("out/octree.html")).unwrap();
-        let message = Folder::open(&folder.path().join("out")).err().unwrap().to_string();
+        let message = Folder::<OctreeStudy>::open(&folder.path().join("out")).err().unwrap().to_string();
         assert!(message.contains("octree.html"), "{message}");
     }
 }

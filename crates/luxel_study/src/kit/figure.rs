@@ -1,12 +1,11 @@
 //! A figure of the page, and what may stand in it.
 use super::chart::Chart;
-use super::record::Run;
 use super::verdict::Verdict;
 
 /// A figure of the report redone, or one that it lacks.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Figure {
-    /// 1 to 21 are the report's.
+    /// In the order of the page; the report's have its numbers.
     pub(crate) number: u32,
     pub(crate) title: String,
     /// One sentence: what is to be seen.
@@ -24,9 +23,11 @@ pub(crate) enum Part {
     Heat(Heat),
     /// PNG in base64, and what it shows.
     Picture(String, String),
+    /// Several, side by side: PNG in base64, and the text below.
+    Pictures(Vec<(String, String)>),
     Table(Table),
-    /// The cells of a cube and the eight directions in which they are visited.
-    Cube,
+    /// An `svg` element.
+    Drawing(String),
 }
 
 impl Part {
@@ -53,20 +54,4 @@ pub(crate) struct Heat {
     pub(crate) corner: &'static str,
     pub(crate) columns: Vec<String>,
     pub(crate) rows: Vec<(String, Vec<Option<f64>>)>,
-}
-
-/// The setting of a sweep in words: `low quality (4 samples, depth 4), 96x72, CPU`.
-pub(crate) fn setting(run: Option<&Run>) -> String {
-    match run {
-        None => "not measured".to_owned(),
-        Some(run) => format!(
-            "{} quality ({} samples, depth {}), {}x{}, {}",
-            run.quality,
-            run.spp,
-            run.bounces,
-            run.width,
-            run.height,
-            super::select::backend_name(&run.backend)
-        ),
-    }
 }

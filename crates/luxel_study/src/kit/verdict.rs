@@ -147,13 +147,13 @@ impl Verdict {
     }
 }
 
-/// A speed or ratio at a number of spheres.
+/// A speed or ratio at a number of things.
 pub(crate) type AtCount = (u32, f64);
 
 /// From where on a structure always wins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Crossover {
-    /// The largest number of spheres at which it does not.
+    /// The largest number of things at which it does not.
     pub(crate) not_at: Option<u32>,
     /// The smallest from which on it does.
     pub(crate) from: Option<u32>,
@@ -167,19 +167,19 @@ pub(crate) fn crossover(noise: Noise, ratios: &[AtCount]) -> Crossover {
     Crossover { not_at: before.last().map(|(count, _)| *count), from: won.first().map(|(count, _)| *count) }
 }
 
-/// The crossover in words.
-pub(crate) fn crossover_text(noise: Noise, ratios: &[AtCount]) -> String {
-    let said = |spheres: u32| count(u64::from(spheres));
+/// The crossover in words, by the number of `things`.
+pub(crate) fn crossover_text(noise: Noise, ratios: &[AtCount], things: &str) -> String {
+    let said = |number: u32| count(u64::from(number));
     match crossover(noise, ratios) {
         Crossover { not_at: None, from: None } => "not measured".to_owned(),
         Crossover { not_at: Some(last), from: None } => {
-            format!("not up to {} spheres, the most that were measured", said(last))
+            format!("not up to {} {things}, the most that were measured", said(last))
         }
         Crossover { not_at: None, from: Some(from) } => {
-            format!("at {} spheres, the fewest that were measured, and from there on", said(from))
+            format!("at {} {things}, the fewest that were measured, and from there on", said(from))
         }
         Crossover { not_at: Some(last), from: Some(from) } => {
-            format!("between {} and {} spheres", said(last), said(from))
+            format!("between {} and {} {things}", said(last), said(from))
         }
     }
 }
@@ -266,7 +266,7 @@ mod tests {
         assert_eq!(of(&[(10, 1.2), (50, 1.2)]), (None, Some(10)));
         assert_eq!(of(&[(10, 1.2), (50, 1.05)]), (Some(50), None));
         assert_eq!(of(&[]), (None, None));
-        let text = |ratios: &[AtCount]| crossover_text(NOISE, ratios);
+        let text = |ratios: &[AtCount]| crossover_text(NOISE, ratios, "spheres");
         assert_eq!(text(&[(10, 1.008), (50, 2.0)]), "between 10 and 50 spheres");
         assert!(text(&[(10, 2.0)]).starts_with("at 10 spheres, the fewest"));
         assert!(text(&[(10, 0.5)]).starts_with("not up to 10"));

@@ -1,0 +1,46 @@
+//! The reader of lists, against damaged records of this study.
+use std::fs;
+
+use super::read_runs;
+use super::record::{Run, example};
+
+#[test]
+fn a_damaged_line_is_one_error_with_file_and_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("runs.jsonl");
+    let good = serde_json::to_string(&Run { dark: Some(0.5), lost_pixels: Some(3), ..example() }).unwrap();
+    fs::write(&path, &good).unwrap();
+    assert_eq!(read_runs(&path).unwrap().len(), 1);
+    for (from, to, part) in [
+        ("\"bvh\",\"format\"", "\"octree\",\"format\"", "study 'octree'"),
+        ("\"fps\":100.0", "\"fps\":90.0", "fps 90 contradicts frame_ms 10"),
+        ("\"structure\":\"bvh\"", "\"structure\":\"kd\"", "structure is 'kd'"),
+        ("\"preset\":\"medium\"", "\"preset\":\"slow\"", "preset is 'slow'"),
+        ("\"split\":\"sah\"", "\"split\":\"hash\"", "split is 'hash'"),
+        ("\"levels\":\"two\"", "\"levels\":\"three\"", "levels is 'three'"),
+        ("\"view\":\"scene\"", "\"view\":\"behind\"", "view is 'behind'"),
+        ("\"triangles\":69620", "\"triangles\":0", "triangles is out of range: 0"),
+        ("\"leaf_size\":8", "\"leaf_size\":0", "leaf_size is out of range: 0"),
+        ("\"lost_pixels\":3", "\"lost_pixels\":9999", "lost_pixels is out of range: 9999"),
+        ("\"dark\":0.5", "\"dark\":1.5", "dark is out of range: 1.5"),
+        ("\"sah_cost\":31.5", "\"sah_cost\":-1.0", "sah_cost is out of range: -1"),
+        ("}", ",\"picture_png\":\"\\\" onerror=\"}", "picture_png"),
+    ] {
+        let second = good.replace(from, to);
+        assert_ne!(second, good);
+        fs::write(&path, format!("{good}\n{second}\n")).unwrap();
+        let message = read_runs(&path).unwrap_err().to_string();
+        assert!(message.contains("runs.jsonl:2: ") && message.contains(part), "{message}");
+    }
+}
+
+#[test]
+fn a_list_of_the_other_study_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("runs.jsonl");
+    fs::write(&path, serde_json::to_string(&crate::octree::example()).unwrap()).unwrap();
+    let message = read_runs(&path).unwrap_err().to_string();
+    assert!(message.contains("study 'octree': not of this study"), "{message}");
+    fs::write(&path, serde_json::to_string(&example()).unwrap()).unwrap();
+    assert!(crate::octree::read_runs(&path).unwrap_err().to_string().contains("study 'bvh'"));
+}

@@ -1,0 +1,71 @@
+//! The BVH study: the results of seed document 2, made again on one machine, and what its discussion supposes.
+//!
+//! A [`Plan`] says what is measured; [`run`] measures it and leaves a record per configuration, a table and a page.
+//! The page is made from records alone, so [`redo`] makes it again from a list of runs. What a figure claims and
+//! whether that holds is decided from the numbers by code.
+//!
+//! Deviations from the report: the bunny is a rabbit of our own with as many triangles unless a model is given;
+//! pictures are small enough for a CPU and a software GPU driver, and frames per second are also given as they would
+//! be at 1920×1080 if time went with the pixels; structures take turns frame by frame; the time of a frame is the
+//! median.
+//!
+//! Invariants: as of every study (`kit`); figures 6 to 14 are always there, if only to say that they lack runs.
+mod configuration;
+mod figures;
+#[cfg(test)]
+mod files;
+mod page;
+mod plan;
+mod record;
+mod scene;
+mod select;
+mod study;
+mod summary;
+
+use std::path::Path;
+
+pub use page::page;
+pub use plan::Plan;
+pub use record::{FORMAT, Run, STUDY, Sweep};
+pub use scene::BunnyModel;
+
+use crate::StudyError;
+use crate::kit::{self, list};
+use crate::octree::{Origin, StudyObserver};
+pub(crate) use study::BvhStudy;
+
+/// The page.
+pub const PAGE: &str = "bvh.html";
+
+/// What a study left.
+pub type Studied = kit::Studied<Run>;
+
+/// Measures a plan and writes runs, table and page to a folder, which is made if it is missing.
+///
+/// # Errors
+/// When the folder cannot be written, holds files of something else or is being written to, or when no backend of the
+/// plan works. What was measured before a backend failed stays in `runs.jsonl.part`.
+pub fn run(
+    plan: &Plan,
+    origin: &Origin,
+    out: &Path,
+    observer: &mut StudyObserver<'_>,
+) -> Result<Studied, StudyError> {
+    kit::run::<BvhStudy>(&plan.0, origin, out, observer)
+}
+
+/// Makes table and page again from a list of runs.
+///
+/// # Errors
+/// When the list cannot be read or has a damaged line, or the folder cannot be written or has files of something else.
+pub fn redo(list: &Path, out: &Path) -> Result<Studied, StudyError> {
+    kit::redo::<BvhStudy>(list, out)
+}
+
+/// Reads the records of an earlier study.
+///
+/// # Errors
+/// [`StudyError::Io`], or [`StudyError::Record`] with the first line that is no record of this study.
+pub fn read_runs(path: &Path) -> Result<Vec<Run>, StudyError> {
+    list::read_runs(path)
+}

@@ -1,0 +1,201 @@
+//! What the BVH study takes from a configuration, and its record.
+use std::time::Instant;
+
+use bevy_ecs::prelude::World;
+use luxel_engine::{Counter, FrameSettings, FrameStage, MeshTreeFacts, SphereCloud};
+
+use super::configuration::{Configuration, split_name};
+use super::page::{TITLE, page};
+use super::plan::{BOUNCES, Group};
+use super::record::{FORMAT, Run, STUDY, Sweep};
+use super::scene::{self, Scene};
+use crate::StudyError;
+use crate::kit::measured::{Look, Measured, rounded};
+use crate::kit::picture::png;
+use crate::kit::plan::SEED;
+use crate::kit::study::{Made, Study};
+
+/// Builds are repeated up to this many times, and no longer than this.
+const MOST_BUILDS: usize = 5;
+const BUILD_SECS: f64 = 0.1;
+
+/// Seed document 2's results and discussion.
+pub(crate) struct BvhStudy;
+
+/// What is taken from a configuration beside its frames.
+#[derive(Default)]
+pub(crate) struct Facts {
+    trees: MeshTreeFacts,
+    build_secs: f64,
+    hardware_gpu: bool,
+    look: Option<Look>,
+    dark: Option<f64>,
+    /// What the pixels show first, where structures are compared.
+    seen: Vec<[u32; 2]>,
+    lost_pixels: Option<u32>,
+}
+
+impl Study for BvhStudy {
+    type Run = Run;
+    type Sweep = Sweep;
+    type Scene = Scene;
+    type Configuration = Configuration;
+    type Facts = Facts;
+
+    const KIND: &'static str = "a BVH study";
+    const WORLD: &'static str = "(BVH study)";
+    const TITLE: &'static str = TITLE;
+    const PAGE: &'static str = super::PAGE;
+
+    fn world(scene: &Scene) -> Result<World, StudyError> {
+        scene::world(scene)
+    }
+
+    fn configure(world: &mut World, configuration: &Configuration) {
+        scene::stage(world, &configuration.staging);
+    }
+
+    fn settings(configuration: &Configuration, seed: u32) -> FrameSettings {
+        FrameSettings {
+            cloud: SphereCloud::default(),
+            mesh: configuration.mesh,
+            size: configuration.size,
+            spp: configuration.spp,
+            max_depth: configuration.bounces,
+            seed,
+            first_hits: false,
+        }
+    }
+
+    fn what(group: &Group, configuration: &Configuration) -> String {
+        let variant = match configuration.variant {
+            "" => configuration.mesh.accel.name(),
+            variant => variant,
+        };
+        format!("{}, {variant}", group.scene.name())
+    }
+
+    fn baked(stage: &mut FrameStage, measured: &mut Measured<Facts>) -> Result<(), StudyError> {
+        measured.facts.trees = stage.mesh_trees();
+        measured.facts.build_secs = build_secs(stage)?;
+        measured.facts.hardware_gpu = stage.is_hardware_gpu();
+        Ok(())
+    }
+
+    /// Takes the picture, what is dark in it, and what structures see first.
+    fn look(
+        stage: &mut FrameStage,
+        group: &Group,
+        configuration: &Configuration,
+        _seed: u32,
+        measured: &mut Measured<Facts>,
+        first: Option<&Facts>,
+    ) -> Result<(), StudyError> {
+        let facts = &mut measured.facts;
+        if configuration.shown_spp > 0 {
+            stage.edit(|world| Self::configure(world, configuration));
+            // Pictures that are compared with each other have the same random numbers.
+            let settings = Self::settings(configuration, SEED);
+            // Where only first hits are measured, the picture shows more than those.
+            let max_depth = if group.sweep == Sweep::Lost { BOUNCES } else { configuration.bounces };
+            stage.set(&FrameSettings { spp: configuration.shown_spp, max_depth, ..settings })?;
+            stage.frame()?;
+            facts.look = Some(Look { png: png(&stage.picture()?)?, noise: stage.noise()? });
+            facts.dark = (group.sweep == Sweep::Shadow).then(|| stage.dark_share()).transpose()?;
+        }
+        if group.sweep == Sweep::Lost {
+            stage.edit(|world| Self::configure(world, configuration));
+            let settings = Self::settings(configuration, SEED);
+            stage.set(&FrameSettings { first_hits: true, ..settings })?;
+            stage.frame()?;
+            facts.seen = stage.first_primitives()?;
+            facts.lost_pixels = first.map(|naive| differing(&naive.seen, &facts.seen));
+        }
+        Ok(())
+    }
+
+    fn record(made: &Made<'_, Self>, configuration: &Configuration, measured: &Measured<Facts>) -> Run {
+        let Made { plan, origin, facts: backend, group } = *made;
+        let Configuration { mesh, staging, variant, size: (width, height), spp, bounces, shown_spp } =
+            configuration;
+        let facts = &measured.facts;
+        let timing = measured.timing();
+        Run {
+            study: STUDY.to_owned(),
+            format: FORMAT,
+            sweep: group.sweep,
+            quick: plan.quick,
+            planned_runs: plan.run_count() as u32,
+            date: origin.date.clone(),
+            version: origin.version.clone(),
+            commit: origin.commit.clone(),
+            machine: origin.machine.clone(),
+            backend: backend.backend.name().to_owned(),
+            device: backend.device.clone(),
+            driver: backend.driver.trim().to_owned(),
+            hardware_gpu: facts.hardware_gpu,
+            scene: group.scene.name().to_owned(),
+            model: group.scene.model(),
+            variant: (*variant).to_owned(),
+            structure: mesh.accel.name().to_owned(),
+            preset: mesh.quality.name().to_owned(),
+            split: split_name(mesh.split).to_owned(),
+            bins: mesh.bins.unwrap_or_default(),
+            leaf_size: mesh.leaf_size,
+            levels: if staging.is_one_mesh { "one" } else { "two" }.to_owned(),
+            view: staging.view.name().to_owned(),
+            triangles: u32::try_from(facts.trees.triangles).unwrap_or(u32::MAX),
+            width: *width,
+            height: *height,
+            spp: *spp,
+            bounces: *bounces,
+            picture_spp: *shown_spp,
+            build_secs: rounded(facts.build_secs),
+            sah_cost: rounded(facts.trees.sah_cost),
+            bytes: facts.trees.bytes,
+            nodes: u32::try_from(facts.trees.nodes).unwrap_or(u32::MAX),
+            depth: facts.trees.depth,
+            frames: timing.frames,
+            outliers: timing.outliers,
+            frame_ms: timing.frame_ms,
+            frame_ms_p25: timing.frame_ms_p25,
+            frame_ms_p75: timing.frame_ms_p75,
+            fps: timing.fps,
+            rays: timing.rays,
+            rays_per_sec: timing.rays_per_sec,
+            nodes_per_ray: measured.per_ray(Counter::BvhNodes),
+            tlas_nodes_per_ray: measured.per_ray(Counter::TlasNodes),
+            tests_per_ray: measured.per_ray(Counter::TriangleTests),
+            lambert_bounces: measured.per_frame(Counter::LambertBounces),
+            metal_bounces: measured.per_frame(Counter::MetalBounces),
+            dielectric_bounces: measured.per_frame(Counter::DielectricBounces),
+            semi_specular_bounces: measured.per_frame(Counter::SemiSpecularBounces),
+            shadow_rays: measured.per_frame(Counter::ShadowRays),
+            lost_pixels: facts.lost_pixels,
+            dark: facts.dark.map(rounded),
+            noise: facts.look.as_ref().map(|look| rounded(look.noise)),
+            frames_ms: timing.frames_ms,
+            picture_png: facts.look.as_ref().map(|look| look.png.clone()),
+        }
+    }
+
+    fn page(runs: &[Run]) -> Result<String, StudyError> {
+        page(runs)
+    }
+}
+
+/// How many pixels show something else.
+fn differing(a: &[[u32; 2]], b: &[[u32; 2]]) -> u32 {
+    let common = a.iter().zip(b).filter(|(a, b)| a != b).count();
+    (common + a.len().abs_diff(b.len())) as u32
+}
+
+/// The median of some builds, for a single short one tells little.
+fn build_secs(stage: &FrameStage) -> Result<f64, StudyError> {
+    let start = Instant::now();
+    let mut builds = Vec::new();
+    while builds.len() < MOST_BUILDS && (builds.is_empty() || start.elapsed().as_secs_f64() < BUILD_SECS) {
+        builds.push(stage.mesh_build_secs()?);
+    }
+    Ok(crate::kit::stats::median(&builds).unwrap_or_default())
+}
