@@ -2,7 +2,7 @@
 use std::fmt::Write;
 
 use luxel_engine::info::SceneInfo;
-use luxel_engine::{Engine, ExitCode, SphereAccelFacts};
+use luxel_engine::{Engine, ExitCode, LoadOptions, SphereAccelFacts};
 
 use crate::args::InfoArgs;
 use crate::error::CliError;
@@ -10,7 +10,8 @@ use crate::reply;
 
 /// Describes a scene.
 pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
-    let mut engine = Engine::load(&args.file)?;
+    let options = LoadOptions { scene: args.scene.clone(), environment: args.environment.clone() };
+    let mut engine = Engine::load_with(&args.file, &options)?;
     // Of the scene as it is in its file, whatever is asked for besides.
     let scene_hash = engine.scene_hash()?;
     args.sphere_accel.into_iter().for_each(|accel| engine.use_sphere_accel(accel));
@@ -25,6 +26,8 @@ pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
 
 fn text(info: &SceneInfo) -> String {
     let mut sections = vec![head(info), structures(info), memory(info), features(info)];
+    sections.push(lines("used of the model", &info.used));
+    sections.push(lines("ignored", &info.ignored));
     sections.push(lines("dropped", &info.dropped));
     let warnings: Vec<String> = info.warnings.iter().chain(&info.baked.warnings).cloned().collect();
     sections.push(lines("warnings", &warnings));

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use luxel_engine::output::Precision;
 use luxel_engine::{
-    AovKind, Engine, ExitCode, RenderEvent, RenderJob, RenderSummary, Rendered, Stopped, View,
+    AovKind, Engine, ExitCode, LoadOptions, RenderEvent, RenderJob, RenderSummary, Rendered, Stopped, View,
 };
 use serde::Serialize;
 
@@ -37,14 +37,15 @@ pub(crate) fn render(args: &RenderArgs) -> Result<ExitCode, CliError> {
     if args.output.is_some() {
         targets.check()?;
     }
-    run(&args.file, job(args), &targets, &ignored(args, &targets.output), args.json)
+    let options = LoadOptions { scene: args.scene.clone(), environment: args.environment.clone() };
+    run(&args.file, &options, job(args), &targets, &ignored(args, &targets.output), args.json)
 }
 
 /// Renders a job to one PNG and says so.
 pub(crate) fn to_picture(scene: &Path, job: RenderJob, output: &Path) -> Result<ExitCode, CliError> {
     let output = output.to_owned();
     let targets = Targets { output, aovs: Vec::new(), view: View::PathTraced, precision: Precision::Half };
-    run(scene, job, &targets, &[], false)
+    run(scene, &LoadOptions::default(), job, &targets, &[], false)
 }
 
 fn job(args: &RenderArgs) -> RenderJob {
@@ -55,8 +56,11 @@ fn job(args: &RenderArgs) -> RenderJob {
         seconds: args.time,
         error: args.error,
         seed: args.seed,
+        light_sampling: args.light_sampling,
         max_depth: args.max_depth,
         sphere_accel: args.sphere_accel,
+        mesh_accel: args.mesh_accel,
+        mesh_quality: args.mesh_quality,
         camera: args.camera.clone(),
         tone_map: args.tone_map,
         exposure: args.exposure,
@@ -82,6 +86,7 @@ fn default_output(scene: &Path) -> PathBuf {
 /// Renders, writes and answers; `notes` are told once the scene is known to make sense.
 fn run(
     scene: &Path,
+    options: &LoadOptions,
     job: RenderJob,
     targets: &Targets,
     notes: &[String],
@@ -90,7 +95,7 @@ fn run(
     let interrupt = Interrupt::listen()?;
     let progress = ProgressLine::new(scene);
     progress.stage("loading");
-    let mut engine = Engine::load(scene)?;
+    let mut engine = Engine::load_with(scene, options)?;
     // After loading, because the output may be named after a scene that does not exist.
     targets.check()?;
     notes.iter().for_each(|note| progress.note(&one_line(note)));

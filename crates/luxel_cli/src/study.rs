@@ -4,9 +4,11 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use luxel_engine::{BackendChoice, ExitCode};
-use luxel_study::octree::{self, Origin, Plan, Studied, StudyEvent};
+use luxel_study::bvh::{self, BunnyModel};
+use luxel_study::octree;
+use luxel_study::{Origin, Studied, StudyError, StudyEvent, StudyObserver};
 
-use crate::args::{OctreeArgs, Study, StudyArgs, StudyBackends};
+use crate::args::{BvhArgs, OctreeArgs, Study, StudyArgs, StudyBackends, StudyOptions};
 use crate::error::{CliError, one_line};
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
@@ -14,23 +16,52 @@ use crate::reply;
 
 /// Makes the study that the arguments name; `source` is the folder that the program was built from.
 pub(crate) fn study(args: &StudyArgs, source: &Path) -> Result<ExitCode, CliError> {
-    match &args.study {
-        Study::Octree(args) => octree(args, source),
-    }
-}
-
-fn octree(args: &OctreeArgs, source: &Path) -> Result<ExitCode, CliError> {
-    let studied = match &args.from {
-        Some(list) => octree::redo(list, &args.out)?,
-        None => measure(args, source)?,
+    let line = match &args.study {
+        Study::Octree(args) => octree(args, source)?,
+        Study::Bvh(args) => bvh(args, source)?,
     };
-    reply::print_text(&last_line(&studied))?;
+    reply::print_text(&line)?;
     Ok(ExitCode::Done)
 }
 
-fn measure(args: &OctreeArgs, source: &Path) -> Result<Studied, CliError> {
+fn octree(args: &OctreeArgs, source: &Path) -> Result<String, CliError> {
+    let OctreeArgs { options, out } = args;
+    if let Some(list) = &options.from {
+        return Ok(last_line(&octree::redo(list, out)?));
+    }
+    let make = if options.quick { octree::Plan::quick } else { octree::Plan::full };
+    let mut plan = make(backends(options));
+    if let Some(secs) = options.seconds {
+        plan = plan.with_secs_each(secs);
+    }
+    let studied =
+        measure("octree study", source, |origin, observer| octree::run(&plan, origin, out, observer))?;
+    Ok(last_line(&studied))
+}
+
+fn bvh(args: &BvhArgs, source: &Path) -> Result<String, CliError> {
+    let BvhArgs { file, options, out } = args;
+    if let Some(list) = &options.from {
+        return Ok(last_line(&bvh::redo(list, out)?));
+    }
+    let model = file.clone().map_or(BunnyModel::Rabbit, BunnyModel::File);
+    let make = if options.quick { bvh::Plan::quick } else { bvh::Plan::full };
+    let mut plan = make(backends(options), &model);
+    if let Some(secs) = options.seconds {
+        plan = plan.with_secs_each(secs);
+    }
+    let studied = measure("BVH study", source, |origin, observer| bvh::run(&plan, origin, out, observer))?;
+    Ok(last_line(&studied))
+}
+
+/// Runs a study under a line of progress, until it is over or interrupted.
+fn measure<R>(
+    name: &str,
+    source: &Path,
+    run: impl FnOnce(&Origin, &mut StudyObserver<'_>) -> Result<Studied<R>, StudyError>,
+) -> Result<Studied<R>, CliError> {
     let interrupt = Interrupt::listen()?;
-    let progress = ProgressLine::new(Path::new("octree study"));
+    let progress = ProgressLine::new(Path::new(name));
     let mut observer = |event: &StudyEvent| {
         match event {
             StudyEvent::Progress(state) => progress.show_study(state),
@@ -38,23 +69,18 @@ fn measure(args: &OctreeArgs, source: &Path) -> Result<Studied, CliError> {
         }
         if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let studied = octree::run(&plan(args), &Origin::now(commit(source)), &args.out, &mut observer)?;
+    let studied = run(&Origin::now(commit(source)), &mut observer)?;
     if !studied.is_complete && !studied.files.is_empty() {
         progress.note("interrupted; what there is was written");
     }
     Ok(studied)
 }
 
-fn plan(args: &OctreeArgs) -> Plan {
-    let backends: &[BackendChoice] = match args.backend {
+fn backends(options: &StudyOptions) -> &'static [BackendChoice] {
+    match options.backend {
         StudyBackends::Cpu => &[BackendChoice::Cpu],
         StudyBackends::Gpu => &[BackendChoice::Gpu],
         StudyBackends::Both => &[BackendChoice::Cpu, BackendChoice::Gpu],
-    };
-    let plan = if args.quick { Plan::quick(backends) } else { Plan::full(backends) };
-    match args.seconds {
-        Some(secs) => plan.with_secs_each(secs),
-        None => plan,
     }
 }
 
@@ -67,7 +93,7 @@ fn commit(source: &Path) -> Option<String> {
     (output.status.success() && !name.is_empty()).then_some(name)
 }
 
-fn last_line(studied: &Studied) -> String {
+fn last_line<R>(studied: &Studied<R>) -> String {
     if studied.files.is_empty() {
         return "stopped before the first run; nothing was written".to_owned();
     }

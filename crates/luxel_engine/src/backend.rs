@@ -40,6 +40,11 @@ impl BackendChoice {
     }
 }
 
+/// True if there is a GPU that is no software driver.
+pub fn has_hardware_gpu() -> bool {
+    luxel_gpu::list_adapters().iter().any(|adapter| adapter.kind == AdapterKind::Hardware)
+}
+
 /// The CPU tracer.
 pub(crate) fn cpu(because: String) -> ChosenTracer {
     ChosenTracer { tracer: Box::new(CpuTracer::new()), because }

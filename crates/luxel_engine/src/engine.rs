@@ -4,10 +4,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use bevy_ecs::prelude::*;
-use luxel_bake::{BakeReport, Baker};
+use luxel_bake::{BakeReport, Baker, TextureBudget};
+use luxel_film::tracer::BackendFacts;
 use luxel_film::{Display, ToneMap};
 use luxel_flat::FlatScene;
-use luxel_scene::{ActiveCamera, Camera, LoadReport, Name, RenderSettings, ToneMapping};
+use luxel_scene::{ActiveCamera, Camera, LoadOptions, LoadReport, Name, RenderSettings, ToneMapping};
 
 use crate::EngineError;
 use crate::sphere_keeper::SphereKeeper;
@@ -25,14 +26,22 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// Loads a scene (`.ron`) or a model (`.obj`, `.vox`).
+    /// Loads a scene (`.ron`) or a model (`.gltf`, `.glb`, `.obj`, `.ply`, `.vox`).
     ///
     /// # Errors
     /// When the file cannot be read or makes no scene.
     pub fn load(path: &Path) -> Result<Self, EngineError> {
+        Self::load_with(path, &LoadOptions::default())
+    }
+
+    /// The same, with a say in which scene of a model is loaded and in what surrounds it.
+    ///
+    /// # Errors
+    /// As [`Engine::load`]; and a scene that the model has not, or an environment that is no picture.
+    pub fn load_with(path: &Path, options: &LoadOptions) -> Result<Self, EngineError> {
         let start = Instant::now();
         let mut world = luxel_scene::empty_world();
-        let report = luxel_scene::load(path, &mut world)?;
+        let report = luxel_scene::load_with(path, &mut world, options)?;
         let mut engine = Self::over(world, path)?;
         engine.report = report;
         engine.load_secs = start.elapsed().as_secs_f64();
@@ -67,6 +76,14 @@ impl Engine {
         let baked = self.sphere_keeper.bake(&mut self.baker, &mut self.world);
         self.bake_secs += start.elapsed().as_secs_f64();
         baked.map_err(|source| EngineError::Bake { scene: self.path.display().to_string(), source })
+    }
+
+    /// Holds the scene's textures to what a backend can read. True if that is other than before: the next
+    /// [`Engine::bake`] makes them fit.
+    pub(crate) fn fit(&mut self, facts: &BackendFacts) -> bool {
+        let budget =
+            facts.max_array_bytes.map_or_else(TextureBudget::default, |bytes| TextureBudget { bytes });
+        self.world.get_resource_or_init::<TextureBudget>().set_if_neq(budget)
     }
 
     /// Counts rays that were traced in the scene that was baked last. What they cost is what the structure over the

@@ -15,11 +15,12 @@ use glam::DVec3;
 use luxel_accel::{RootCell, SphereOptions, SphereStructure};
 use luxel_bake::SphereFacts;
 use luxel_cpu::{Exclusion, traverse};
-use luxel_film::tracer::{BackendFacts, TraceRequest};
+use luxel_film::tracer::{Backend, BackendFacts, TraceRequest};
 use luxel_film::{Film, ImageError, View};
 use luxel_flat::{Counter, Counters, FlatScene, SphereRecord};
 use luxel_geom::Ray;
-use luxel_scene::{RenderSettings, SphereAccel, SphereCloud};
+use luxel_gpu::{AdapterFacts, AdapterKind};
+use luxel_scene::{MeshStructure, RenderSettings, SphereAccel, SphereCloud};
 
 use crate::output::Picture;
 use crate::runner::check_searches;
@@ -30,6 +31,8 @@ use crate::{BackendChoice, ChosenTracer, Engine, EngineError};
 pub struct FrameSettings {
     /// The structure over the spheres.
     pub cloud: SphereCloud,
+    /// The structure over the triangles of meshes.
+    pub mesh: MeshStructure,
     /// Width and height in pixels.
     pub size: (u32, u32),
     /// Samples per pixel of a frame.
@@ -51,12 +54,12 @@ pub struct Frame {
     pub counters: Counters,
 }
 
-/// A world of spheres, and the tracer that makes frames of it and of those that come after it.
+/// A world, and the tracer that makes frames of it and of those that come after it.
 pub struct FrameStage {
-    engine: Engine,
+    pub(crate) engine: Engine,
     name: PathBuf,
     chosen: ChosenTracer,
-    scene: Arc<FlatScene>,
+    pub(crate) scene: Arc<FlatScene>,
     spp: u32,
     /// Samples that every pixel has.
     samples: u32,
@@ -69,10 +72,13 @@ impl FrameStage {
     /// # Errors
     /// When the backend cannot be had.
     pub fn open(world: World, name: &str, backend: BackendChoice) -> Result<Self, EngineError> {
+        let mut engine = Engine::over(world, Path::new(name))?;
+        let chosen = backend.open()?;
+        engine.fit(&chosen.tracer.facts());
         Ok(Self {
-            engine: Engine::over(world, Path::new(name))?,
+            engine,
             name: PathBuf::from(name),
-            chosen: backend.open()?,
+            chosen,
             scene: Arc::default(),
             spp: 1,
             samples: 0,
@@ -85,6 +91,19 @@ impl FrameStage {
         self.chosen.tracer.facts()
     }
 
+    /// True on a GPU that is no software driver.
+    pub fn is_hardware_gpu(&self) -> bool {
+        let facts = self.facts();
+        let is_it =
+            |adapter: &AdapterFacts| adapter.name == facts.device && adapter.kind == AdapterKind::Hardware;
+        facts.backend == Backend::Gpu && luxel_gpu::list_adapters().iter().any(is_it)
+    }
+
+    /// Changes the world; the next [`FrameStage::set`] takes it in.
+    pub fn edit(&mut self, edit: impl FnOnce(&mut World)) {
+        edit(&mut self.engine.world);
+    }
+
     /// Goes on with another world. Its spheres are taken in without a structure, so that what [`FrameStage::set`]
     /// asks for next is built anew, not edited.
     ///
@@ -94,6 +113,7 @@ impl FrameStage {
         self.chosen.tracer.leave_world()?;
         self.engine = Engine::over(world, &self.name)?;
         self.engine.world.resource_mut::<SphereCloud>().accel = SphereAccel::Naive;
+        self.engine.fit(&self.chosen.tracer.facts());
         self.scene = self.engine.bake()?;
         Ok(())
     }
@@ -104,6 +124,7 @@ impl FrameStage {
     /// When the scene cannot be baked or does not fit the device.
     pub fn set(&mut self, settings: &FrameSettings) -> Result<(), EngineError> {
         self.engine.world.resource_mut::<SphereCloud>().set_if_neq(settings.cloud);
+        self.engine.world.resource_mut::<MeshStructure>().set_if_neq(settings.mesh);
         let (width, height) = settings.size;
         let FrameSettings { spp, max_depth, seed, .. } = *settings;
         let other = RenderSettings { width, height, spp, max_depth, seed, ..self.engine.settings() };
@@ -203,6 +224,26 @@ impl FrameStage {
     pub fn first_hits(&mut self) -> Result<Vec<u32>, EngineError> {
         let hits = self.film()?.first_hits().unwrap_or_default();
         Ok(hits.iter().map(|hit| if hit.instance == 0 { 0 } else { hit.primitive + 1 }).collect())
+    }
+
+    /// What the camera ray of each pixel met: stable ids of instance and primitive; zeros for the sky. Empty if first
+    /// hits were not recorded.
+    ///
+    /// # Errors
+    /// When the film cannot be read back.
+    pub fn first_primitives(&mut self) -> Result<Vec<[u32; 2]>, EngineError> {
+        let hits = self.film()?.first_hits().unwrap_or_default();
+        Ok(hits.iter().map(|hit| [hit.instance, hit.primitive]).collect())
+    }
+
+    /// The share of the pixels that no light reached so far.
+    ///
+    /// # Errors
+    /// When the film cannot be read back.
+    pub fn dark_share(&mut self) -> Result<f64, EngineError> {
+        let film = self.film()?;
+        let dark = film.beauty().iter().filter(|radiance| radiance.iter().all(|c| *c == 0.0)).count();
+        Ok(dark as f64 / film.pixels.len().max(1) as f64)
     }
 
     /// What each ray (in world space) meets first: stable id of the sphere, plus one; 0 for nothing. Traced on the

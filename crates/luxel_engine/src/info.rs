@@ -29,7 +29,11 @@ pub struct SceneInfo {
     pub sphere_accel: SphereAccelFacts,
     /// Every feature.
     pub features: Vec<FeatureFacts>,
-    /// What import left out, one line each.
+    /// What of a model is shown, one line each.
+    pub used: Vec<String>,
+    /// What a model has and the scene does not show, one line each.
+    pub ignored: Vec<String>,
+    /// What import left out because it is damaged, one line each.
     pub dropped: Vec<String>,
     /// What import and the structure over the spheres warn about, one line each.
     pub warnings: Vec<String>,
@@ -65,6 +69,8 @@ impl Engine {
             baked,
             sphere_accel,
             features: features(scene.features),
+            used: self.load_report().used.clone(),
+            ignored: self.load_report().ignored.clone(),
             dropped: self.load_report().dropped.clone(),
             load_secs: self.load_secs(),
             bake_secs: self.bake_secs(),

@@ -2,7 +2,7 @@
 use bevy_ecs::prelude::*;
 use luxel_film::{StopRule, ToneMap};
 use luxel_flat::FeatureSet;
-use luxel_scene::{RenderSettings, SphereAccel, ToneMapping};
+use luxel_scene::{LightSampling, MeshAccel, MeshQuality, RenderSettings, SphereAccel, ToneMapping};
 
 use crate::{BackendChoice, Engine, EngineError, Quality};
 
@@ -29,8 +29,14 @@ pub struct RenderJob {
     pub seed: Option<u32>,
     /// How often light may scatter after the first hit.
     pub max_depth: Option<u32>,
+    /// Which techniques find lights.
+    pub light_sampling: Option<LightSampling>,
     /// Structure over the spheres.
     pub sphere_accel: Option<SphereAccel>,
+    /// How meshes are searched.
+    pub mesh_accel: Option<MeshAccel>,
+    /// How much work goes into the trees of meshes.
+    pub mesh_quality: Option<MeshQuality>,
     /// Name of the camera.
     pub camera: Option<String>,
     /// Curve from radiance to display.
@@ -58,12 +64,14 @@ impl RenderJob {
         if let Some(accel) = self.sphere_accel {
             engine.use_sphere_accel(accel);
         }
+        engine.use_mesh_structure(self.mesh_accel, self.mesh_quality);
         let mut settings = engine.settings();
         (settings.width, settings.height) = self.size.unwrap_or((settings.width, settings.height));
         settings.spp = self.samples().unwrap_or(settings.spp);
         settings.seed = self.seed.unwrap_or(settings.seed);
         let depth = self.max_depth.or(self.quality.map(|quality| quality.row().max_depth));
         settings.max_depth = depth.unwrap_or(settings.max_depth);
+        settings.light_sampling = self.light_sampling.unwrap_or(settings.light_sampling);
         settings.tone_map = self.tone_map.map_or(settings.tone_map, tone_mapping);
         settings.exposure = self.exposure.unwrap_or(settings.exposure);
         engine.world.resource_mut::<RenderSettings>().set_if_neq(settings);

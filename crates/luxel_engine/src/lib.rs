@@ -15,10 +15,12 @@ mod backend;
 pub mod doctor;
 mod engine;
 mod error;
+mod frame_meshes;
 mod frames;
 pub mod graph;
 pub mod info;
 mod job;
+mod mesh_structure;
 pub mod output;
 mod quality;
 mod runner;
@@ -28,16 +30,19 @@ mod sphere_keeper;
 mod sphere_upkeep;
 mod summary;
 
-pub use backend::{BackendChoice, ChosenTracer};
+pub use backend::{BackendChoice, ChosenTracer, has_hardware_gpu};
 pub use engine::Engine;
 pub use error::{EngineError, ExitCode};
+pub use frame_meshes::MeshTreeFacts;
 pub use frames::{Frame, FrameSettings, FrameStage};
 pub use job::{MAX_DEPTH, MAX_SIZE, RenderJob};
 pub use luxel_bake::SphereFacts;
 pub use luxel_film::tracer::BackendFacts;
 pub use luxel_film::{AovKind, ToneMap, View};
 pub use luxel_flat::{Counter, Counters, Feature, FeatureSet};
-pub use luxel_scene::{SphereAccel, SphereCloud};
+pub use luxel_scene::{
+    LightSampling, LoadOptions, MeshAccel, MeshQuality, MeshStructure, SphereAccel, SphereCloud,
+};
 pub use quality::{QUALITIES, Quality, QualityRow};
 pub use runner::{Observer, RenderEvent, RenderProgress, Rendered, Stopped};
 pub use sphere_accel::SphereAccelFacts;

@@ -100,7 +100,10 @@ impl Engine {
         self.finish(run, chosen)
     }
 
-    fn finish(&mut self, run: Run<'_, '_>, chosen: ChosenTracer) -> Result<Rendered, EngineError> {
+    fn finish(&mut self, mut run: Run<'_, '_>, chosen: ChosenTracer) -> Result<Rendered, EngineError> {
+        if self.fit(&chosen.tracer.facts()) {
+            run.request.scene = self.bake()?;
+        }
         let rendered = run.on(chosen)?;
         self.note_traced(rendered.stats.counters.rays());
         Ok(rendered)

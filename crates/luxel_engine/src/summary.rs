@@ -146,7 +146,8 @@ impl Rendered {
 
     fn all_notices(&self, engine: &Engine, baked: &[String], spheres: &SphereAccelFacts) -> Vec<String> {
         let load = engine.load_report();
-        let all = load.dropped.iter().chain(&load.warnings).chain(baked);
+        let ignored = load.ignored_line();
+        let all = load.dropped.iter().chain(&ignored).chain(&load.warnings).chain(baked);
         let traced = doubts(&self.stats.counters);
         all.cloned().chain(spheres.notices()).chain(traced).chain(self.notices.iter().cloned()).collect()
     }
