@@ -66,7 +66,7 @@ fn too_many_to_test() -> Engine {
     let settings = RenderSettings { width: 8, height: 8, max_depth: 2, ..RenderSettings::default() };
     world.insert_resource(settings);
     world.insert_resource(SphereCloud { accel: SphereAccel::Naive, ..SphereCloud::default() });
-    let camera = Camera { vertical_fov: 0.7, lens_radius: 0.0, focus_distance: 1.0 };
+    let camera = Camera::pinhole(0.7);
     luxel_scene::spawn(&mut world, (camera, Transform::at(DVec3::Z * 4.0)));
     let mut random = Random::new(1);
     for _ in 0..70_000 {

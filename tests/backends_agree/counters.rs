@@ -42,7 +42,7 @@ enum Things {
 
 fn scene(things: Things) -> FlatScene {
     let mut world = luxel_scene::empty_world();
-    let camera = Camera { vertical_fov: 0.7, lens_radius: 0.0, focus_distance: 1.0 };
+    let camera = Camera::pinhole(0.7);
     luxel_scene::spawn(&mut world, (camera, Transform::at(DVec3::Z * 9.0)));
     let grey = Material::lambert(Vec3::splat(0.5));
     let mut random = Random::new(1);

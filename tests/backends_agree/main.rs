@@ -5,7 +5,10 @@
 mod asset;
 mod counters;
 mod first_hits;
+mod materials;
 mod slices;
 mod tile_means;
 #[path = "../support/traced.rs"]
 mod traced;
+#[path = "../support/welch.rs"]
+mod welch;

@@ -13,7 +13,7 @@ pub(crate) struct Seen {
     /// Stable id of the instance.
     pub(crate) instance: u32,
     primitive: u32,
-    material: [u32; 9],
+    material: [u32; size_of::<MaterialRecord>() / 4],
 }
 
 /// What each ray sees by the structures.
@@ -51,16 +51,17 @@ pub(crate) fn differing(a: &[Option<Seen>], b: &[Option<Seen>]) -> Vec<usize> {
 }
 
 fn seen(scene: &FlatScene, hit: &Hit<f32>) -> Seen {
-    let MaterialRecord { kind, flags, param_first, param_count, color, scalar } =
-        scene.materials.as_slice()[hit.on.material as usize];
-    let param = scene.material_params.as_slice()[param_first as usize..][..param_count as usize].first();
-    let [red, green, blue] = color.map(f32::to_bits);
-    let [r, g, b, _] = param.copied().unwrap_or_default().map(f32::to_bits);
+    // Where the entity's lights stand in their table is a matter of history, not of the picture.
+    let material = MaterialRecord {
+        light_first: 0,
+        texture_first: 0,
+        ..scene.materials.as_slice()[hit.on.material as usize]
+    };
     Seen {
         t: hit.on.t.to_bits(),
         uv: hit.on.uv.map(f32::to_bits),
         instance: hit.instance_id,
         primitive: hit.on.primitive,
-        material: [kind, flags, red, green, blue, scalar.to_bits(), r, g, b],
+        material: bytemuck::cast(material),
     }
 }

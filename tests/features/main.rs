@@ -21,6 +21,7 @@ use luxel_flat::{Counter, FEATURES, Feature, FeatureRow, FeatureSet};
 use luxel_gpu::{Gpu, ShaderLibrary, SlicePolicy, testing::gpu_or_fail};
 use luxel_render::{GpuTracer, KERNELS, NODES, conditions};
 
+use scene::Setting;
 use traced::{Traced, trace};
 
 /// Share of paths that must agree between the scene's own code and that with all features.
@@ -31,10 +32,15 @@ const SAME_RADIANCE: f32 = 1e-3;
 const SAME_TILE: f64 = 1e-2;
 const TILE: u32 = 32;
 
-/// A scene that calls for everything but, maybe, one feature.
-fn request(without: Option<Feature>) -> TraceRequest {
-    let mut engine = Engine::over(scene::without(without), Path::new("everything")).unwrap();
+/// A scene that calls for everything that its setting can, or that but one feature.
+fn request(setting: Setting, without: Option<Feature>) -> TraceRequest {
+    let mut engine = Engine::over(scene::without(setting, without), Path::new("everything")).unwrap();
     TraceRequest::new(engine.bake().unwrap()).with_aovs(without != Some(Feature::Aovs))
+}
+
+/// The scene that shows a feature, without it.
+fn request_without(feature: Feature) -> TraceRequest {
+    request(Setting::with(feature), Some(feature))
 }
 
 fn on_gpu(gpu: &Gpu, requests: &[TraceRequest]) -> Vec<Traced> {
@@ -48,19 +54,23 @@ fn with_all_features(request: &TraceRequest) -> TraceRequest {
 
 #[test]
 fn a_scene_with_everything_does_the_work_of_every_row() {
-    let request = request(None);
-    assert_eq!(request.features, FeatureSet::ALL, "the scene does not call for everything");
-    let cpu = trace(&mut CpuTracer::new(), &request, 1);
-    check_counters(&cpu.stats, "cpu", |row, counter, count| {
-        assert!(count > 0, "{}: {counter:?} is zero in a scene with it", row.name);
-    });
-    let Some(gpu) = gpu_or_fail() else { return };
-    let gpu = &on_gpu(&gpu, &[request])[0];
-    check_counters(&gpu.stats, "gpu", |row, counter, count| {
-        assert!(count > 0, "{}: {counter:?} is zero in a scene with it", row.name);
-    });
-    for label in FEATURES.iter().flat_map(kernels_of) {
-        assert!(has_pass(&gpu.stats, label), "no pass {label} in a scene that needs it");
+    let gpu = gpu_or_fail();
+    for setting in Setting::ALL {
+        let request = request(setting, None);
+        assert_eq!(request.features, setting.features(), "{setting:?} does not call for everything");
+        let check = |stats: &TraceStats, backend: &str| {
+            check_counters(stats, backend, |row, counter, count| {
+                let is_called_for = request.features.has(row.feature);
+                assert!(count > 0 || !is_called_for, "{}: {counter:?} is zero on the {backend}", row.name);
+            });
+        };
+        check(&trace(&mut CpuTracer::new(), &request, 1).stats, "cpu");
+        let Some(gpu) = &gpu else { continue };
+        let gpu = &on_gpu(gpu, &[request.clone()])[0];
+        check(&gpu.stats, "gpu");
+        for label in request.features.rows().flat_map(kernels_of) {
+            assert!(has_pass(&gpu.stats, label), "no pass {label} in a scene that needs it");
+        }
     }
 }
 
@@ -68,11 +78,13 @@ fn a_scene_with_everything_does_the_work_of_every_row() {
 fn a_scene_without_a_row_links_nothing_of_it() {
     let library = ShaderLibrary::embedded();
     for row in FEATURES {
-        let request = request(Some(row.feature));
-        let (features, accel) = (request.features, request.scene.sphere_accel);
-        assert_eq!(features, FeatureSet::ALL.with(row.feature, false), "{}: the scene", row.name);
+        let request = request_without(row.feature);
+        let (scene, features) = (&request.scene, request.features);
+        let conditions = conditions(features, scene.sphere_accel, scene.mesh_accel);
+        let expected = Setting::with(row.feature).features_without(row.feature);
+        assert_eq!(features, expected, "{}: the scene", row.name);
         for kernel in KERNELS.iter().filter(|kernel| kernel.feature.is_none_or(|f| features.has(f))) {
-            let linked = library.link(&kernel.kernel, &conditions(features, accel)).unwrap();
+            let linked = library.link(&kernel.kernel, &conditions).unwrap();
             let left = |symbol: &&&str| linked.functions.iter().any(|f| f.ends_with(&format!("::{symbol}")));
             assert_eq!(row.symbols.iter().find(left), None, "{} in {}", row.name, kernel.kernel.entry);
             let bound = |name: &&&str| linked.binding(name).is_some();
@@ -84,7 +96,7 @@ fn a_scene_without_a_row_links_nothing_of_it() {
 #[test]
 fn on_the_cpu_it_counts_zero_and_the_picture_is_that_of_all_features() {
     for row in FEATURES {
-        let request = request(Some(row.feature));
+        let request = request_without(row.feature);
         let own = trace(&mut CpuTracer::new(), &request, 2);
         check_absent(row, &own.stats, "cpu");
         let all = trace(&mut CpuTracer::new(), &with_all_features(&request), 2);
@@ -98,7 +110,7 @@ fn on_the_cpu_it_counts_zero_and_the_picture_is_that_of_all_features() {
 fn on_the_gpu_it_runs_nothing_and_the_picture_is_that_of_all_features() {
     let Some(gpu) = gpu_or_fail() else { return };
     for row in FEATURES {
-        let request = request(Some(row.feature));
+        let request = request_without(row.feature);
         let traced = on_gpu(&gpu, &[request.clone(), with_all_features(&request)]);
         let (own, all) = (&traced[0], &traced[1]);
         check_absent(row, &own.stats, "gpu");
@@ -120,7 +132,7 @@ fn on_the_gpu_it_runs_nothing_and_the_picture_is_that_of_all_features() {
 
 #[test]
 fn pictures_that_differ_are_told_apart() {
-    let request = request(None);
+    let request = request(Setting::Day, None);
     let film = trace(&mut CpuTracer::new(), &request, 1).film;
     assert_eq!(agreeing_paths(&film, &film), 1.0);
     let mut brighter = film.clone();

@@ -22,6 +22,7 @@ fn the_scene_files_give_what_they_say() {
         assert_eq!(max_depth, 64);
         let job = luxel_engine::RenderJob {
             spp: Some(16),
+            light_sampling: Some(luxel_engine::LightSampling::Bsdf),
             backend: luxel_engine::BackendChoice::Cpu,
             ..luxel_engine::RenderJob::default()
         };

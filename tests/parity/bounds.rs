@@ -21,7 +21,7 @@ const fn bound(function: &'static str, forward: f32, backward: f32, because: &'s
 }
 
 /// In the order of the cases.
-pub(crate) const BOUNDS: [Bound; 12] = [
+pub(crate) const BOUNDS: [Bound; 32] = [
     bound("box_interval", 16.0, 4.0, "difference 2u, reciprocal 5u, product 2u, pad 2u; Rust 4u"),
     bound(
         "intersect_sphere",
@@ -59,4 +59,64 @@ pub(crate) const BOUNDS: [Bound; 12] = [
         0.0,
         "log2 and exp2: 2^-21 each, through slopes of up to 13; a code value is 65,536u",
     ),
+    bound(
+        "masking_shadowing",
+        96.0,
+        0.0,
+        "two roots and a quotient: 30u; the root of both in a sum of positive terms",
+    ),
+    bound(
+        "visible_normal_pdf",
+        96.0,
+        0.0,
+        "a spread of positive terms (12u), squared, a quotient and a root; Rust half of it",
+    ),
+    bound("sample_visible_normal", 16384.0, 8.0, "WGSL's sin and cos: absolute 2^-11, twice"),
+    bound(
+        "refraction_normal",
+        64.0,
+        8.0,
+        "a length and a quotient, in parts of the summands; turned over at the horizon",
+    ),
+    bound(
+        "refraction_jacobian",
+        64.0,
+        0.0,
+        "scalar products in parts of their summands, squares and a quotient",
+    ),
+    bound("fresnel_schlick", 48.0, 0.0, "a fifth power of a difference: 2u of 1, five times, and a blend"),
+    bound(
+        "fresnel_dielectric_schlick",
+        96.0,
+        8.0,
+        "as fresnel_dielectric, and a fifth power; the critical angle",
+    ),
+    bound(
+        "conductor_loss",
+        2048.0,
+        0.0,
+        "a place is wrong by 30u, of 64 entries that differ by less than one",
+    ),
+    bound("coat_albedo", 2048.0, 0.0, "as conductor_loss, times Fresnel's 64u"),
+    bound(
+        "glass_loss",
+        4096.0,
+        16.0,
+        "as conductor_loss; near an index of one the place is the root of a difference",
+    ),
+    bound("uniform_triangle", 4.0, 0.0, "a product by half is exact, a difference 2u"),
+    bound("uniform_cone", 8192.0, 0.0, "WGSL's sin and cos: absolute 2^-11"),
+    bound("sphere_opening", 64.0, 8.0, "a length 14u, its difference to the radius, a root, two quotients"),
+    bound("sample_sphere", 8192.0, 8.0, "WGSL's sin and cos: absolute 2^-11; half chords at the rim"),
+    bound("triangle_pdf", 64.0, 0.0, "three factors of a length, in parts of the scalar product's summands"),
+    bound("decode_direction", 32.0, 0.0, "unpack 3u, two differences, a length and a quotient"),
+    bound("decode_tangent", 32.0, 0.0, "as decode_direction"),
+    bound(
+        "srgb_decode",
+        256.0,
+        0.0,
+        "pow by log2 (2^-21) times 2.4 and exp2 (3 ulp and 2 per unit of the exponent)",
+    ),
+    bound("direction_to_equirect", 8192.0, 0.0, "WGSL's atan2: 4096 ulp; sin and cos: absolute 2^-11"),
+    bound("valid_shading_normal", 128.0, 16.0, "two mirrors, two lengths; half vectors that cancel"),
 ];

@@ -1,4 +1,5 @@
-//! The functions that have twins: how each is called in WESL and in Rust, and on what.
+//! The functions that have twins: how each is called in WESL and in Rust, and on what. Geometry is here, reflection in
+//! `reflectance.rs`, sampling and maps in `sampling.rs`.
 use glam::Vec3;
 use luxel_film::{ToneMap, tonemap};
 use luxel_flat::{PATH_ENTERING, PATH_LEAVING};
@@ -12,15 +13,16 @@ use crate::bounds::{BOUNDS, Bound};
 use crate::device;
 use crate::inputs::{input, number, point, ray, size, unit};
 use crate::judge::{Call, Expected, Input, Output};
+use crate::{reflectance, sampling};
 
 /// A function and its twin.
 pub(crate) struct Case {
     pub(crate) function: &'static str,
-    imports: &'static str,
+    pub(crate) imports: &'static str,
     /// The body of `fn call(in: Input) -> Output`.
-    body: &'static str,
+    pub(crate) body: &'static str,
     pub(crate) twin: fn(&Input) -> Expected,
-    make: fn(&mut Random) -> Input,
+    pub(crate) make: fn(&mut Random) -> Input,
 }
 
 impl Case {
@@ -46,7 +48,12 @@ fn call(in: Input) -> Output {{ {} }}",
     }
 }
 
-fn xyz(v: [f32; 4]) -> Vec3 {
+/// Every case, of this file and of the others.
+pub(crate) fn all() -> impl Iterator<Item = &'static Case> {
+    CASES.iter().chain(&reflectance::CASES).chain(&sampling::CASES)
+}
+
+pub(crate) fn xyz(v: [f32; 4]) -> Vec3 {
     Vec3::new(v[0], v[1], v[2])
 }
 
@@ -73,7 +80,7 @@ fn any_exclude(random: &mut Random) -> u32 {
     [0, 0, 0, PATH_LEAVING, PATH_ENTERING][random.below(5) as usize]
 }
 
-pub(crate) static CASES: [Case; 12] = [
+static CASES: [Case; 12] = [
     Case {
         function: "box_interval",
         imports: "import package::geom::aabb::{Aabb, box_interval, overlaps};
@@ -268,7 +275,7 @@ pub(crate) static CASES: [Case; 12] = [
 ];
 
 /// Points of the unit square, some on its borders and diagonals.
-fn square(r: &mut Random) -> Input {
+pub(crate) fn square(r: &mut Random) -> Input {
     let mut at = |_| [0.0, 0.5, 1.0 - f32::EPSILON * 0.5, r.uniform(), r.uniform()][r.below(5) as usize];
     let (u, v) = (at(0), at(1));
     let v = if r.below(8) == 0 { u } else { v };

@@ -1,4 +1,5 @@
 //! One WGSL function called on many inputs.
+use luxel_flat::{Feature, SphereAccel};
 use luxel_gpu::{
     FeatureSet, Frame, Gpu, GpuBuffer, Kernel, Overrides, PipelineCache, Resources, ShaderLibrary,
     workgroups_for,
@@ -8,6 +9,12 @@ use bytemuck::Pod;
 
 const WIDTH: u32 = 64;
 const KERNEL: Kernel = Kernel { module: "package::parity", entry: "parity", workgroup_size: [WIDTH, 1, 1] };
+
+/// The features whose bindings the functions read.
+fn features() -> FeatureSet {
+    let principled = luxel_flat::FeatureSet::NONE.with(Feature::Principled, true);
+    principled.conditions().chain(SphereAccel::Naive.conditions()).collect()
+}
 
 /// Calls `fn call(input: Input) -> Output` of a WESL module, which declares both structs, once per input.
 pub(crate) fn map<I: Pod, O: Pod + Default>(gpu: &Gpu, module: &str, inputs: &[I]) -> Vec<O> {
@@ -26,10 +33,14 @@ fn parity(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gro
 "
     );
     let mut cache = PipelineCache::new(ShaderLibrary::embedded().with_module(KERNEL.module, source));
-    let pipeline = cache.get(gpu, &KERNEL, &FeatureSet::default(), &Overrides::default()).unwrap();
+    let pipeline = cache.get(gpu, &KERNEL, &features(), &Overrides::default()).unwrap();
     let input_buffer = GpuBuffer::from_slice(gpu, "inputs", inputs).unwrap();
     let output_buffer = GpuBuffer::from_slice(gpu, "outputs", &vec![O::default(); count]).unwrap();
-    let resources = Resources::new().buffer("inputs", &input_buffer).buffer("outputs", &output_buffer);
+    let tables = GpuBuffer::from_slice(gpu, "albedo_tables", &luxel_geom::albedo::TABLES).unwrap();
+    let resources = Resources::new()
+        .buffer("inputs", &input_buffer)
+        .buffer("outputs", &output_buffer)
+        .buffer("albedo_tables", &tables);
     let bindings = pipeline.bind(gpu, &resources).unwrap();
     let mut frame = Frame::new(gpu);
     let workgroups = workgroups_for(count as u64, WIDTH, gpu.limits()).unwrap();

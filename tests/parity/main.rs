@@ -8,13 +8,14 @@ mod film;
 mod inputs;
 mod integers;
 mod judge;
+mod reflectance;
+mod sampling;
 mod watertight;
 
 use luxel_gpu::testing::gpu_or_fail;
 use luxel_testkit::Random;
 
 use bounds::BOUNDS;
-use cases::CASES;
 use judge::{Call, Tally};
 
 /// Calls of each function.
@@ -25,7 +26,7 @@ const MAX_EXPLAINED: f64 = 0.02;
 #[test]
 fn floats_are_within_their_bounds() {
     let Some(gpu) = gpu_or_fail() else { return };
-    for case in &CASES {
+    for case in cases::all() {
         let calls = case.calls(&gpu, CALLS);
         let tally = Tally::of(case, &calls);
         println!("{:22} {tally}", case.function);
@@ -48,7 +49,7 @@ fn floats_are_within_their_bounds() {
 #[test]
 fn results_that_are_off_are_told() {
     let Some(gpu) = gpu_or_fail() else { return };
-    for case in &CASES {
+    for case in cases::all() {
         let mut calls = case.calls(&gpu, 1 << 12);
         let off = 1.0 + 8.0 * case.bound().forward * judge::U;
         for Call { found, .. } in &mut calls {
@@ -77,6 +78,6 @@ fn results_that_are_off_are_told() {
 fn every_bound_belongs_to_a_case() {
     assert_eq!(
         BOUNDS.map(|bound| bound.function).to_vec(),
-        CASES.each_ref().map(|case| case.function).to_vec()
+        cases::all().map(|case| case.function).collect::<Vec<_>>()
     );
 }

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use glam::{DAffine3, DVec3, UVec3, Vec3};
 use luxel_accel::{BvhOptions, SphereOptions, SvoVoxel, build_mesh, build_svo, build_tlas};
 use luxel_flat::{
-    BvhNode, Counter, Feature, FeatureSet, FlatScene, Heap, Instance, KIND_MESH, KIND_VOXELS, MaterialRecord,
+    Counter, Feature, FeatureSet, FlatScene, Heap, Instance, KIND_MESH, KIND_VOXELS, MaterialRecord,
     SceneParams, SphereAccel, SphereRecord,
 };
 use luxel_geom::{Aabb, Affine, Ray};
@@ -279,12 +279,10 @@ impl Parts {
         let instances: Vec<Instance> = (0..).zip(places).map(placed).collect();
         let boxes = (0..).zip(&instances).map(|(slot, i)| (slot, Aabb { lo: i.lo.into(), hi: i.hi.into() }));
         let tlas = build_tlas(&boxes.collect::<Vec<_>>()).unwrap();
-        let mut nodes: Vec<BvhNode> = self.flat.bvh_nodes.as_slice().to_vec();
-        let (tlas_first, tlas_count) = (nodes.len() as u32, tlas.len() as u32);
-        nodes.extend(tlas);
+        let (tlas_first, tlas_count) = (self.flat.bvh_nodes.len() as u32, tlas.len() as u32);
         FlatScene {
             params: SceneParams { tlas_first, tlas_count, ..SceneParams::default() },
-            bvh_nodes: Heap::from_records(nodes, 1),
+            tlas_nodes: Heap::from_records(tlas, 1),
             instances: Heap::from_records(instances, 1),
             materials: Heap::from_records(vec![MaterialRecord::default()], 1),
             features: self.flat.features.with(Feature::Lambert, true),

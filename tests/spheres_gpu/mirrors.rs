@@ -38,7 +38,7 @@ fn in_double_precision(scene: &FlatScene, ray: &Ray<f32>) -> Reflections {
         && let Some(hit) = traverse::intersect(scene, &ray, &exclusion, &mut Counters::default())
     {
         ray = reflect(scene, &ray, &hit, &mut met);
-        exclusion = Exclusion { instance: 0, primitive: hit.on.slot, how: Exclude::Leaving };
+        exclusion = Exclusion { instance: 0, primitive: hit.on.slot, how: Exclude::Leaving, ..Exclusion::NOTHING };
     }
     met
 }

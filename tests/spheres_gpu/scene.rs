@@ -37,7 +37,7 @@ pub(crate) fn of_structure(structure: &SphereStructure, revision: u64) -> FlatSc
     let tlas = build_tlas(&[(0, bounds)]).unwrap();
     FlatScene {
         params: SceneParams { tlas_count: tlas.len() as u32, ..SceneParams::default() },
-        bvh_nodes: Heap::from_records(tlas, revision),
+        tlas_nodes: Heap::from_records(tlas, revision),
         instances: Heap::from_records(vec![instance], revision),
         sphere_accel: structure.options().accel,
         spheres: structure.spheres().clone(),

@@ -2,6 +2,8 @@
 //!
 //! Everything is made from integer hashes (`luxel_geom::rng`), so that a case is the same on every machine and
 //! can be named by its seed.
+pub mod closed;
+pub mod exact;
 pub mod meshes;
 pub mod random;
 pub mod rays;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, ensure};
 
-use crate::{generate, machine, vulkan};
+use crate::{albedo, generate, machine, vulkan};
 
 type Step = (&'static str, fn() -> Result<()>);
 
@@ -15,7 +15,7 @@ type Step = (&'static str, fn() -> Result<()>);
 const STEPS: [Step; 8] = [
     ("machine", vulkan::ensure),
     ("format", || cargo(&["fmt", "--all", "--check"])),
-    ("generated files", generate::check),
+    ("generated files", || generate::check().and_then(|()| albedo::check())),
     ("clippy", || cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])),
     ("docs", docs),
     ("house rules", || cargo(&["test", "--package", "luxel", "--test", "house_rules"])),

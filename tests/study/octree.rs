@@ -1,16 +1,14 @@
 //! The octree study: the smallest plan that has every figure, measured, and made again from its records.
-#![allow(clippy::unwrap_used)]
-
-mod front_door;
-
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use front_door::{Outcome, luxel, names, run};
 use luxel_engine::BackendChoice;
 use luxel_study::octree::{self, Origin, Plan, Run, Studied, StudyEvent, Sweep};
 use tempfile::TempDir;
+
+use crate::front_door::{luxel, names, run};
+use crate::page::{check_page, refused};
 
 /// Figures of the report, then those that it lacks.
 const REPORTS: u32 = 21;
@@ -26,49 +24,6 @@ static STUDY: LazyLock<(TempDir, Studied)> = LazyLock::new(|| {
     (folder, studied)
 });
 
-/// Insists on one line of error with that exit code and gives the line.
-fn refused(outcome: Outcome, code: i32) -> String {
-    assert_eq!(outcome.code, Some(code), "{}", outcome.stderr);
-    assert!(
-        outcome.stderr.lines().count() == 1 && outcome.stderr.starts_with("error: "),
-        "{}",
-        outcome.stderr
-    );
-    outcome.stderr
-}
-
-/// What stands between two marks, after the first of each.
-fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
-    let start = text.find(from).unwrap_or_else(|| panic!("no {from}")) + from.len();
-    let length = text[start..].find(to).unwrap_or_else(|| panic!("no {to} after {from}"));
-    &text[start..start + length]
-}
-
-fn check_page(page: &str) {
-    for number in 1..=ALL {
-        let figure = between(page, &format!("<section class=\"figure\" id=\"fig-{number}\""), "</section>");
-        assert!(figure.contains(&format!("Fig. {number}: ")), "{number}");
-        let verdict = figure.rsplit("class=\"verdict ").next().unwrap();
-        let (answer, because) = verdict.split_once("</span>").unwrap();
-        assert!(
-            ["holds", "holds partly", "does not hold", "cannot be told", "no claim"]
-                .iter()
-                .any(|a| answer.ends_with(&format!(">{a}"))),
-            "{number}: {answer}"
-        );
-        assert!(because.trim_end_matches("</p>").trim().len() > 10, "{number}: {because}");
-        let shown = ["<svg", "<img", "<table class=\"heat\""].iter().any(|what| figure.contains(what));
-        assert!(shown, "figure {number} shows nothing");
-    }
-    let report_ends = page.find(&format!("id=\"fig-{}\"", REPORTS + 1)).unwrap();
-    assert!(page.find("Further figures").unwrap() < report_ends);
-    let without_names = page.replace("http://www.w3.org/2000/svg", "");
-    for resource in ["http:", "https:", "<link", "<script", "@import"] {
-        assert!(!without_names.contains(resource), "{resource}");
-    }
-    assert_eq!(page.matches("data:image/png;base64,").count(), 5);
-}
-
 fn check_files(folder: &Path, studied: &Studied) {
     assert_eq!(names(folder), ["octree.html", "runs.csv", "runs.jsonl"]);
     let list = octree::read_runs(&folder.join("runs.jsonl")).unwrap();
@@ -76,7 +31,9 @@ fn check_files(folder: &Path, studied: &Studied) {
     // No text of a run has a line break.
     assert_eq!((list.len(), table.lines().count()), (studied.runs.len(), studied.runs.len() + 1));
     assert!(list == studied.runs, "what was read is not what was measured");
-    check_page(&std::fs::read_to_string(folder.join("octree.html")).unwrap());
+    let page = std::fs::read_to_string(folder.join("octree.html")).unwrap();
+    check_page(&page, 1..=ALL, REPORTS, &["<svg", "<img", "<table class=\"heat\""]);
+    assert_eq!(page.matches("data:image/png;base64,").count(), 5);
 }
 
 #[test]

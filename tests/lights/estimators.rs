@@ -1,0 +1,70 @@
+//! L11: next-event estimation, scattering alone, and both weighted make the same picture. L13: roulette changes no mean.
+use bevy_ecs::prelude::World;
+use luxel_cpu::CpuTracer;
+use luxel_scene::{LightSampling, RenderSettings};
+
+use crate::scenes::{
+    crowd_stage, engine, every_kind_stage, lamp_stage, sample_by, sphere_stage, window_stage,
+};
+use crate::welch::{batches, mean_and_variance, worst_ratio};
+
+fn check(name: &str, world: World) {
+    let mut engine = engine(world);
+    let mut by = |sampling, seed, samples| {
+        sample_by(&mut engine, sampling);
+        batches(&mut engine, &mut CpuTracer::new(), seed, samples)
+    };
+    let mis = by(LightSampling::Mis, 0x1000, 6);
+    let nee = by(LightSampling::Nee, 0x2000, 6);
+    let bsdf = by(LightSampling::Bsdf, 0x3000, 16);
+    let pairs = [("MIS, NEE", &mis, &nee), ("MIS, BSDF", &mis, &bsdf), ("NEE, BSDF", &nee, &bsdf)];
+    for (pair, a, b) in pairs {
+        let ratio = worst_ratio(a, b);
+        let [[mean_a, variance_a], [mean_b, variance_b]] = [mean_and_variance(a), mean_and_variance(b)];
+        println!(
+            "{name}: {pair}: |t| at most {ratio:.3} of its limit; means {mean_a:.5} ± {:.5}, {mean_b:.5} ± {:.5}",
+            variance_a.sqrt(),
+            variance_b.sqrt()
+        );
+        assert!(ratio <= 1.0, "{name}: {pair} differ: {ratio} of the limit");
+    }
+    let brighter: Vec<Vec<f64>> = mis.iter().map(|batch| batch.iter().map(|v| 1.05 * v).collect()).collect();
+    assert!(worst_ratio(&brighter, &nee) > 1.0, "{name}: the test does not see 5 %");
+}
+
+#[test]
+fn l11_a_lamp() {
+    check("lamp", lamp_stage());
+}
+
+#[test]
+fn l11_a_sphere() {
+    check("sphere", sphere_stage());
+}
+
+#[test]
+fn l11_a_map() {
+    check("map", window_stage());
+}
+
+#[test]
+fn l11_fifty_lights() {
+    check("crowd", crowd_stage());
+}
+
+#[test]
+fn l11_every_kind() {
+    check("every kind", every_kind_stage());
+}
+
+#[test]
+fn l13_roulette_changes_no_mean() {
+    let mut engine = engine(sphere_stage());
+    engine.world.resource_mut::<RenderSettings>().max_depth = 6;
+    let without = batches(&mut engine, &mut CpuTracer::new(), 0x4000, 6);
+    engine.world.resource_mut::<RenderSettings>().roulette_depth = 1;
+    let with = batches(&mut engine, &mut CpuTracer::new(), 0x5000, 6);
+    let ratio = worst_ratio(&without, &with);
+    println!("roulette: |t| at most {ratio:.3} of its limit");
+    assert!(ratio <= 1.0, "{ratio}");
+}
