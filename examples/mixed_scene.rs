@@ -59,7 +59,7 @@ fn build_world() -> anyhow::Result<World> {
     spawn(&mut world, (sponge_at, VoxelVolume { volume: sponge }));
 
     let eye = DVec3::new(0.0, 2.6, 7.5);
-    let camera = Camera { vertical_fov: 35f64.to_radians(), lens_radius: 0.0, focus_distance: 7.5 };
+    let camera = Camera { focus_distance: 7.5, ..Camera::pinhole(35f64.to_radians()) };
     spawn(&mut world, (Transform::looking_at(eye, DVec3::Y * 0.9), camera, ActiveCamera));
     Ok(world)
 }

@@ -3,7 +3,7 @@ use glam::{UVec3, Vec3};
 use luxel_accel::{
     BvhOptions, RootCell, SphereOptions, SphereStructure, Svo, SvoVoxel, build_mesh, build_svo,
 };
-use luxel_cpu::{Exclusion, cloud, mesh, volume};
+use luxel_cpu::{Query, cloud, mesh, volume};
 use luxel_flat::{
     Counters, FlatScene, Heap, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SphereAccel, SphereRecord,
 };
@@ -48,8 +48,7 @@ impl ClosestHit for LuxelBvh {
     fn closest(&self, ray: &Ray<f32>) -> Option<f32> {
         let Placed { scene, instance, .. } = &self.0;
         let mut counters = Counters::default();
-        mesh::intersect(scene, instance, &SlabRay::new(ray), &Exclusion::NOTHING, &mut counters)
-            .map(|hit| hit.t)
+        mesh::intersect(&Query::new(scene, instance, SlabRay::new(ray)), &mut counters).map(|hit| hit.t)
     }
 }
 
@@ -96,8 +95,7 @@ impl ClosestHit for LuxelSpheres {
     fn closest(&self, ray: &Ray<f32>) -> Option<f32> {
         let Placed { scene, instance, .. } = &self.0;
         let mut counters = Counters::default();
-        cloud::intersect(scene, instance, &SlabRay::new(ray), &Exclusion::NOTHING, &mut counters)
-            .map(|hit| hit.t)
+        cloud::intersect(&Query::new(scene, instance, SlabRay::new(ray)), &mut counters).map(|hit| hit.t)
     }
 }
 
@@ -122,7 +120,6 @@ impl ClosestHit for LuxelSvo {
     fn closest(&self, ray: &Ray<f32>) -> Option<f32> {
         let Placed { scene, instance, .. } = &self.0;
         let mut counters = Counters::default();
-        volume::intersect(scene, instance, &SlabRay::new(ray), &Exclusion::NOTHING, &mut counters)
-            .map(|hit| hit.t)
+        volume::intersect(&Query::new(scene, instance, SlabRay::new(ray)), &mut counters).map(|hit| hit.t)
     }
 }

@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used)]
 mod bvh_crate;
 mod inputs;
+mod instances;
 mod luxel;
 mod moving;
 mod obvhs_crate;
@@ -35,6 +36,7 @@ fn main() {
     }
     bench_spheres(&mut criterion, &inputs::sphere_cloud());
     moving::bench(&mut criterion, &inputs::sphere_cloud());
+    instances::bench(&mut criterion);
     bench_voxels(&mut criterion);
     criterion.final_summary();
 }

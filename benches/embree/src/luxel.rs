@@ -1,7 +1,7 @@
 //! Luxel's own structures, as the CPU tracer goes through them.
 use glam::Vec3;
 use luxel_accel::{OctreeOptions, RootCell, SphereBvh, SphereOctree};
-use luxel_cpu::{Exclusion, cloud};
+use luxel_cpu::{Query, cloud};
 use luxel_flat::{Counters, FlatScene, Instance, KIND_SPHERES, SphereAccel, SphereRecord};
 use luxel_geom::{Ray, SlabRay};
 
@@ -52,9 +52,8 @@ impl Engine for Luxel {
     fn trace(&self, rays: &[Ray<f32>], hits: &mut [Hit]) {
         let mut counters = Counters::default();
         for (ray, hit) in rays.iter().zip(hits) {
-            let ray = SlabRay::new(ray);
-            let found =
-                cloud::intersect(&self.scene, &self.instance, &ray, &Exclusion::NOTHING, &mut counters);
+            let query = Query::new(&self.scene, &self.instance, SlabRay::new(ray));
+            let found = cloud::intersect(&query, &mut counters);
             *hit = found.map(|found| (found.t, found.slot));
         }
     }

@@ -1,12 +1,16 @@
-//! Luxel's structures over spheres beside Embree's sphere geometry and obvhs, on one thread of one machine.
+//! Luxel's structures beside Embree and obvhs on one machine, with `EMBREE4_SO` naming the shared library; see
+//! README.md.
 //!
-//! `luxel_embree_bench [ROUNDS] [SPHERES…]`, with `EMBREE4_SO` naming the shared library; see README.md. In every
-//! round each structure takes its turn; the tables show medians of the rounds and the median ratio to Embree within
-//! a round.
+//! `luxel_embree_bench ROUNDS SPHERES…` for spheres on one thread, `luxel_embree_bench meshes ROUNDS FILES…` for
+//! meshes on one and two. In every round each structure takes its turn; the tables show medians of the rounds and the
+//! median ratio to Embree within a round.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod embree;
 mod inputs;
 mod luxel;
+mod meshes;
+#[path = "../../structures/model.rs"]
+mod model;
 mod obvhs_crate;
 
 use cpu_time::ProcessTime;
@@ -24,7 +28,17 @@ pub trait Engine {
     fn trace(&self, rays: &[Ray<f32>], hits: &mut [Hit]);
 }
 
-/// Parameter and sphere of a hit; `None` for a miss.
+/// A structure that also says whether there is anything along a ray.
+pub trait AnyHit: Engine + Sync {
+    /// Boxes and primitives tested per ray for its closest hit, where they are counted.
+    fn work(&self, _: &[Ray<f32>]) -> Option<[f64; 2]> {
+        None
+    }
+    /// Number of rays that meet something.
+    fn count_occluded(&self, rays: &[Ray<f32>]) -> usize;
+}
+
+/// Parameter and primitive of a hit; `None` for a miss.
 pub type Hit = Option<(f32, u32)>;
 
 type Build = fn(&[SphereRecord]) -> Box<dyn Engine>;
@@ -39,7 +53,12 @@ const ENGINES: [(&str, Build); 5] = [
 ];
 
 fn main() {
-    let mut numbers = std::env::args().skip(1).map(|a| a.parse::<usize>().unwrap());
+    let mut arguments = std::env::args().skip(1).peekable();
+    if arguments.next_if(|first| first == "meshes").is_some() {
+        let rounds = arguments.next().map_or(5, |rounds| rounds.parse().unwrap());
+        return arguments.for_each(|file| meshes::compare(file.as_ref(), rounds));
+    }
+    let mut numbers = arguments.map(|a| a.parse::<usize>().unwrap());
     let rounds = numbers.next().unwrap_or(5);
     let counts: Vec<usize> = numbers.collect();
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().unwrap();
