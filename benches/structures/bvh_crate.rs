@@ -55,13 +55,14 @@ impl<P: Primitive> ClosestHit for BvhCrate<P> {
     fn closest(&self, ray: &Ray<f32>) -> Option<f32> {
         let theirs = TheirRay::new(point(ray.origin), Vector3::from(ray.direction.to_array()));
         let mut slab_ray = SlabRay::new(ray);
+        let prepared = P::prepare(&slab_ray);
         let mut best = None;
         for shape in self.tree.nearest_traverse_iterator(&theirs, &self.shapes) {
             // In rising order of entry: nothing behind the best hit is nearer.
             if shape.primitive.bounds().interval(&slab_ray).enter > slab_ray.t_max {
                 break;
             }
-            if let Some(t) = shape.primitive.intersect(&slab_ray) {
+            if let Some(t) = shape.primitive.intersect(&slab_ray, &prepared) {
                 slab_ray.t_max = t;
                 best = Some(t);
             }

@@ -1,5 +1,5 @@
 //! What the structures are built over and traced with.
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::{UVec3, Vec3};
 use luxel_accel::SvoVoxel;
@@ -31,14 +31,21 @@ impl Model {
     }
 }
 
-/// A knot of 70,000 triangles, and the bunny where the shared data lie beside the working copy.
+/// Models that are measured where their files lie beside the working copy; Sponza must be unpacked before
+/// (benches/embree/README.md).
+const FILES: [(&str, &str); 3] = [
+    ("bunny", "../shared/data/meshes/stanford-bunny.obj"),
+    ("dragon", "../shared/data/meshes/dragon-202k.ply"),
+    ("sponza", "target/tmp/crytek_sponza.obj"),
+];
+
+/// A knot of 70,000 triangles, and the files.
 pub(crate) fn models() -> Vec<Model> {
     let knot = MeshSource::TorusKnot { p: 2, q: 3, tube: 0.2, segments: 1400, sides: 25 };
     let mut models = vec![Model::from_source("knot", knot)];
-    let bunny: PathBuf =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/meshes/stanford-bunny.obj");
-    if bunny.is_file() {
-        models.push(Model::from_source("bunny", MeshSource::File(bunny)));
+    let files = FILES.map(|(name, file)| (name, Path::new(env!("CARGO_MANIFEST_DIR")).join(file)));
+    for (name, file) in files.into_iter().filter(|(_, file)| file.is_file()) {
+        models.push(Model::from_source(name, MeshSource::File(file)));
     }
     models
 }

@@ -1,9 +1,9 @@
 //! Luxel's own structures, as the CPU tracer goes through them.
 use glam::{UVec3, Vec3};
 use luxel_accel::{
-    BvhOptions, RootCell, SphereOptions, SphereStructure, Svo, SvoVoxel, build_mesh, build_svo,
+    BvhQuality, RootCell, SphereOptions, SphereStructure, Svo, SvoVoxel, build_mesh, build_svo,
 };
-use luxel_cpu::{Query, cloud, mesh, volume};
+use luxel_cpu::{Query, Wanted, cloud, mesh, volume};
 use luxel_flat::{
     Counters, FlatScene, Heap, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, SphereAccel, SphereRecord,
 };
@@ -22,9 +22,9 @@ struct Placed {
 pub(crate) struct LuxelBvh(Placed);
 
 impl LuxelBvh {
-    pub(crate) fn build(positions: &[Vec3], indices: &[[u32; 3]]) -> Self {
+    pub(crate) fn build(positions: &[Vec3], indices: &[[u32; 3]], quality: BvhQuality) -> Self {
         let ids: Vec<u32> = (0..indices.len() as u32).collect();
-        let built = build_mesh(positions, indices, &ids, &BvhOptions::default()).unwrap();
+        let built = build_mesh(positions, indices, &ids, &quality.options()).unwrap();
         let instance = Instance {
             kind: KIND_MESH,
             node_count: built.nodes.len() as u32,
@@ -49,6 +49,12 @@ impl ClosestHit for LuxelBvh {
         let Placed { scene, instance, .. } = &self.0;
         let mut counters = Counters::default();
         mesh::intersect(&Query::new(scene, instance, SlabRay::new(ray)), &mut counters).map(|hit| hit.t)
+    }
+
+    fn is_occluded(&self, ray: &Ray<f32>) -> bool {
+        let Placed { scene, instance, .. } = &self.0;
+        let query = Query { wanted: Wanted::Any, ..Query::new(scene, instance, SlabRay::new(ray)) };
+        mesh::intersect(&query, &mut Counters::default()).is_some()
     }
 }
 

@@ -1,4 +1,4 @@
-//! Building and closest hits of the three structures, beside the crates `obvhs` and `bvh` in the same run.
+//! Building, closest and any hits of the three structures, beside the crates `obvhs` and `bvh` in the same run.
 //!
 //! Every structure tests primitives with the same functions of `luxel_geom`, so that the rates compare trees and
 //! traversals, not triangle tests; and before anything is measured all of them must find the same hits. Closest hits
@@ -16,6 +16,7 @@ use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput};
+use luxel_accel::BvhQuality;
 use luxel_flat::{SphereAccel, SphereRecord};
 use luxel_geom::Ray;
 
@@ -48,21 +49,36 @@ const SPHERE_STRUCTURES: [(&str, SphereAccel); 2] =
 fn bench_mesh(criterion: &mut Criterion, model: &Model) {
     let triangles: Vec<Vertices> = model.triangles();
     let mut build = group(criterion, &format!("mesh build, {}", model.name), triangles.len());
-    build.bench_function("luxel", |b| b.iter(|| LuxelBvh::build(&model.positions, &model.indices)));
+    let luxel = |quality| LuxelBvh::build(&model.positions, &model.indices, quality);
+    build.bench_function("luxel", |b| b.iter(|| luxel(BvhQuality::Medium)));
+    for quality in PRESETS {
+        build.bench_function(format!("luxel {}", quality.name()), |b| b.iter(|| luxel(quality)));
+    }
     bench_other_builds(&mut build, &triangles);
     build.finish();
 
-    let luxel = LuxelBvh::build(&model.positions, &model.indices);
+    let best = PRESETS.map(|quality| (quality, luxel(quality)));
+    let luxel = luxel(BvhQuality::Medium);
+    let obvhs = ObvhsBinary::build(&triangles);
     for (kind, rays) in inputs::rays(luxel.bounds()) {
-        bench_hits(
-            criterion,
-            &format!("mesh closest hit, {}, {kind}", model.name),
-            &rays,
-            &luxel,
-            &triangles,
-        );
+        let name = format!("mesh closest hit, {}, {kind}", model.name);
+        bench_hits(criterion, &name, &rays, &luxel, &triangles);
+        let mut hits = group(criterion, &name, rays.len());
+        for (quality, other) in &best {
+            let other_name = format!("luxel {}", quality.name());
+            assert_same_hits(&name, &other_name, &luxel, other, &rays);
+            bench_closest(&mut hits, &other_name, other, &rays);
+        }
+        hits.finish();
+        let mut any = group(criterion, &format!("mesh any hit, {}, {kind}", model.name), rays.len());
+        bench_any(&mut any, "luxel", &luxel, &rays);
+        bench_any(&mut any, "obvhs", &obvhs, &rays);
+        any.finish();
     }
 }
+
+/// Presets besides the one that is compared with the crates.
+const PRESETS: [BvhQuality; 3] = [BvhQuality::Fast, BvhQuality::High, BvhQuality::Best];
 
 fn bench_spheres(criterion: &mut Criterion, spheres: &[SphereRecord]) {
     let mut build = group(criterion, "sphere build", spheres.len());
@@ -137,6 +153,16 @@ fn bench_closest(
     rays: &[Ray<f32>],
 ) {
     let count_hits = || rays.iter().filter(|ray| structure.closest(ray).is_some()).count();
+    group.bench_function(BenchmarkId::from_parameter(name), |b| b.iter(count_hits));
+}
+
+fn bench_any(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    name: &str,
+    structure: &dyn ClosestHit,
+    rays: &[Ray<f32>],
+) {
+    let count_hits = || rays.iter().filter(|ray| structure.is_occluded(ray)).count();
     group.bench_function(BenchmarkId::from_parameter(name), |b| b.iter(count_hits));
 }
 

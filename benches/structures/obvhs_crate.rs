@@ -55,25 +55,35 @@ fn as_theirs(ray: &Ray<f32>) -> ObvhsRay {
 }
 
 /// The primitive test in the crate's terms: infinity for a miss.
-fn test<P: Primitive>(primitive: &P, ray: &SlabRay<f32>, t_max: f32) -> f32 {
-    primitive.intersect(&SlabRay { t_max, ..*ray }).unwrap_or(f32::INFINITY)
+fn test<P: Primitive>(primitive: &P, ray: &SlabRay<f32>, prepared: &P::Prepared, t_max: f32) -> f32 {
+    primitive.intersect(&SlabRay { t_max, ..*ray }, prepared).unwrap_or(f32::INFINITY)
 }
 
 impl<P: Primitive> ClosestHit for ObvhsBinary<P> {
     fn closest(&self, ray: &Ray<f32>) -> Option<f32> {
         let (slab_ray, mut hit) = (SlabRay::new(ray), RayHit::none());
+        let prepared = P::prepare(&slab_ray);
         let is_hit = self.tree.ray_traverse(as_theirs(ray), &mut hit, |theirs, i| {
-            test(&self.primitives[i], &slab_ray, theirs.tmax)
+            test(&self.primitives[i], &slab_ray, &prepared, theirs.tmax)
         });
         is_hit.then_some(hit.t)
+    }
+
+    fn is_occluded(&self, ray: &Ray<f32>) -> bool {
+        let slab_ray = SlabRay::new(ray);
+        let prepared = P::prepare(&slab_ray);
+        !self.tree.ray_traverse_miss(as_theirs(ray), |theirs, i| {
+            test(&self.primitives[i], &slab_ray, &prepared, theirs.tmax)
+        })
     }
 }
 
 impl<P: Primitive> ClosestHit for ObvhsWide<P> {
     fn closest(&self, ray: &Ray<f32>) -> Option<f32> {
         let (slab_ray, mut hit) = (SlabRay::new(ray), RayHit::none());
+        let prepared = P::prepare(&slab_ray);
         let is_hit = self.tree.ray_traverse(as_theirs(ray), &mut hit, |theirs, i| {
-            test(&self.primitives[i], &slab_ray, theirs.tmax)
+            test(&self.primitives[i], &slab_ray, &prepared, theirs.tmax)
         });
         is_hit.then_some(hit.t)
     }

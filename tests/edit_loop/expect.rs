@@ -72,14 +72,13 @@ pub(crate) fn check(
     assert!(worn_out <= 1, "{context}: {work:?}");
     let work = &BakeCounters { sphere_rebuilds: work.sphere_rebuilds - worn_out, ..*work };
     let expected = with_snapshots(with_spheres(edit, root_changed), before, after);
-    // A parameter's slot may hold the right radiance from an earlier time.
     let expected = BakeCounters {
         sphere_nodes_touched: work.sphere_nodes_touched,
-        params_written: work.params_written,
+        light_tables: work.light_tables,
         ..expected
     };
     assert_eq!(*work, expected, "{context}");
-    assert!(work.params_written <= edit.cost.params_written, "{context}: {work:?}");
+    check_lights(&context, work, before, after);
     let edits_spheres = expected.sphere_inserts + expected.sphere_removes + expected.sphere_updates;
     // The other structures may be built anew by any edit of a sphere.
     let bounds_nodes = after.sphere_accel == SphereAccel::Octree && expected.sphere_rebuilds == 0;
@@ -87,6 +86,14 @@ pub(crate) fn check(
     let most_nodes = (edits_spheres + expected.sphere_rebuilds).saturating_mul(most_per_edit);
     assert!(work.sphere_nodes_touched <= most_nodes, "{context}: {work:?}");
     check_promises(&context, edit, work);
+}
+
+/// A table of lights is made at most once, if it is another, and never where nothing shines.
+fn check_lights(context: &str, work: &BakeCounters, before: &FlatScene, after: &FlatScene) {
+    let differs = before.lights.as_slice() != after.lights.as_slice();
+    let shines = !(before.lights.is_empty() && after.lights.is_empty());
+    let allowed = u64::from(differs)..=u64::from(shines);
+    assert!(allowed.contains(&work.light_tables), "{context}: {work:?}");
 }
 
 /// Rebuilds of a structure that an edit of one sphere wore out: the loose octree knows none, and naive has no structure.

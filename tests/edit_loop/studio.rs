@@ -174,13 +174,11 @@ impl Studio {
         self.objects.push(Object { kind, entity, asset });
         if kind == Kind::Volume {
             let palette = &self.world.resource::<Assets>().volume(asset.unwrap()).unwrap().grid.palette;
-            let emissive = palette.iter().filter(|material| material.emission != Vec3::ZERO).count() as u64;
-            (cost.materials_written, cost.params_written) =
-                (cost.svo_built * palette.len() as u64, cost.svo_built * emissive);
+            cost.materials_written = cost.svo_built * palette.len() as u64;
         } else {
             let material = self.material();
             self.world.entity_mut(entity).insert(material);
-            (cost.materials_written, cost.params_written) = (1, u64::from(material.emission != Vec3::ZERO));
+            cost.materials_written = 1;
         }
         cost
     }
@@ -230,12 +228,7 @@ impl Studio {
         self.world.entity_mut(object.entity).insert(material);
         let volume = object.asset.and_then(|id| self.world.resource::<Assets>().volume(id));
         let records = volume.map_or(1, |volume| volume.grid.palette.len() as u64);
-        let emissive = u64::from(material.emission != Vec3::ZERO);
-        BakeCounters {
-            materials_written: records,
-            params_written: records * emissive,
-            ..BakeCounters::default()
-        }
+        BakeCounters { materials_written: records, ..BakeCounters::default() }
     }
 
     /// An asset, and the cost of showing it: its structure is built for its first user.
@@ -291,9 +284,9 @@ impl Studio {
         let surface = match self.random.below(3) {
             0 => Surface::Lambert { albedo },
             1 => Surface::Metal { albedo, fuzz: self.random.uniform() },
-            _ => Surface::Dielectric { ior: self.random.between(1.0, 2.5) },
+            _ => Surface::Dielectric { ior: self.random.between(1.0, 2.5), schlick: false },
         };
-        Material { surface, emission }
+        Material { emission, ..surface.into() }
     }
 }
 

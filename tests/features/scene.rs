@@ -165,7 +165,8 @@ fn spawn_objects(world: &mut World) {
 /// A mesh with texture coordinates and colours, a texture with holes, and a normal map.
 fn spawn_textured(world: &mut World, mut mesh: MeshAsset) {
     mesh.mesh.uvs[0] = mesh.mesh.positions.iter().map(|p| Vec2::new(p.x, p.y) * 2.0).collect();
-    mesh.mesh.colors = mesh.mesh.positions.iter().map(|p| Vec4::new(0.9, 0.5 + 0.4 * p.y, 1.0, 1.0)).collect();
+    mesh.mesh.colors =
+        mesh.mesh.positions.iter().map(|p| Vec4::new(0.9, 0.5 + 0.4 * p.y, 1.0, 1.0)).collect();
     let mesh = world.resource_mut::<Assets>().insert_mesh(mesh);
     let color =
         ImagePixels::Rgba8(vec![[200, 90, 60, 255], [90, 200, 60, 255], [60, 90, 200, 120], [255; 4]]);

@@ -191,7 +191,7 @@ fn f01_a_ray_does_not_meet_the_triangle_that_it_leaves() {
     assert!(sizes.all(|(size, offset)| {
         // Far from the origin a small triangle has no shape: an instance holds it there.
         let mesh = lone_triangle(&mut random, size);
-        let at = DAffine3::from_translation(DVec3::new(0.6, -0.5, 0.7) * f64::from(offset));
+        let at = DAffine3::from_translation(DVec3::new(0.6, -0.5, 0.7) * offset);
         let scene = instanced(&mesh, &BvhOptions::default(), &[at]);
         count_bad(random.word(), share, |random| meets_itself(&scene, 0, random)) == 0
     }));

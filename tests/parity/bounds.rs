@@ -21,7 +21,7 @@ const fn bound(function: &'static str, forward: f32, backward: f32, because: &'s
 }
 
 /// In the order of the cases.
-pub(crate) const BOUNDS: [Bound; 32] = [
+pub(crate) const BOUNDS: [Bound; 36] = [
     bound("box_interval", 16.0, 4.0, "difference 2u, reciprocal 5u, product 2u, pad 2u; Rust 4u"),
     bound(
         "intersect_sphere",
@@ -119,4 +119,23 @@ pub(crate) const BOUNDS: [Bound; 32] = [
     ),
     bound("direction_to_equirect", 8192.0, 0.0, "WGSL's atan2: 4096 ulp; sin and cos: absolute 2^-11"),
     bound("valid_shading_normal", 128.0, 16.0, "two mirrors, two lengths; half vectors that cancel"),
+    bound(
+        "area_normal",
+        32.0,
+        0.0,
+        "two edges, two products and a difference, in parts of the longest edge's square",
+    ),
+    bound("triangle_point_inside", 64.0, 16.0, "weights 20u and their sum; a margin in parts of the reach"),
+    bound(
+        "level_hemisphere",
+        16384.0,
+        16.0,
+        "WGSL's sin and cos: absolute 2^-11; the sine is a root near zero",
+    ),
+    bound(
+        "evaluate_bsdf",
+        1024.0,
+        64.0,
+        "a dozen of the above in turn; tables at places that are wrong by 30u",
+    ),
 ];

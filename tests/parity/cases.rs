@@ -1,5 +1,5 @@
 //! The functions that have twins: how each is called in WESL and in Rust, and on what. Geometry is here, reflection in
-//! `reflectance.rs`, sampling and maps in `sampling.rs`.
+//! `reflectance.rs`, sampling and maps in `sampling.rs`, what shading starts from in `surfaces.rs`.
 use glam::Vec3;
 use luxel_film::{ToneMap, tonemap};
 use luxel_flat::{PATH_ENTERING, PATH_LEAVING};
@@ -13,7 +13,7 @@ use crate::bounds::{BOUNDS, Bound};
 use crate::device;
 use crate::inputs::{input, number, point, ray, size, unit};
 use crate::judge::{Call, Expected, Input, Output};
-use crate::{reflectance, sampling};
+use crate::{reflectance, sampling, surfaces};
 
 /// A function and its twin.
 pub(crate) struct Case {
@@ -50,7 +50,7 @@ fn call(in: Input) -> Output {{ {} }}",
 
 /// Every case, of this file and of the others.
 pub(crate) fn all() -> impl Iterator<Item = &'static Case> {
-    CASES.iter().chain(&reflectance::CASES).chain(&sampling::CASES)
+    CASES.iter().chain(&reflectance::CASES).chain(&sampling::CASES).chain(&surfaces::CASES)
 }
 
 pub(crate) fn xyz(v: [f32; 4]) -> Vec3 {

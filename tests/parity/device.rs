@@ -12,8 +12,10 @@ const KERNEL: Kernel = Kernel { module: "package::parity", entry: "parity", work
 
 /// The features whose bindings the functions read.
 fn features() -> FeatureSet {
-    let principled = luxel_flat::FeatureSet::NONE.with(Feature::Principled, true);
-    principled.conditions().chain(SphereAccel::Naive.conditions()).collect()
+    let principled = [Feature::Principled, Feature::Transmission, Feature::Clearcoat];
+    let set =
+        principled.into_iter().fold(luxel_flat::FeatureSet::NONE, |set, feature| set.with(feature, true));
+    set.conditions().chain(SphereAccel::Naive.conditions()).collect()
 }
 
 /// Calls `fn call(input: Input) -> Output` of a WESL module, which declares both structs, once per input.

@@ -10,6 +10,7 @@ mod integers;
 mod judge;
 mod reflectance;
 mod sampling;
+mod surfaces;
 mod watertight;
 
 use luxel_gpu::testing::gpu_or_fail;

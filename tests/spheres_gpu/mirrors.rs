@@ -1,7 +1,7 @@
 //! S06: two facing mirrors a hair apart. The GPU finds each hit, the CPU reflects; in double precision it does both.
 use glam::{DVec3, Vec3};
 use luxel_cpu::hit::PrimitiveHit;
-use luxel_cpu::surface::Surface;
+use luxel_cpu::surface::Place;
 use luxel_cpu::{Exclusion, Hit, traverse};
 use luxel_flat::{Counters, FlatScene};
 use luxel_geom::{Exclude, Ray, Real, Vector};
@@ -24,7 +24,7 @@ type Reflections = Vec<(u32, DVec3)>;
 
 /// Notes a reflection and returns the ray that leaves.
 fn reflect<R: Real>(scene: &FlatScene, ray: &Ray<R>, hit: &Hit<R>, met: &mut Reflections) -> Ray<R> {
-    let surface: Surface<R> = Surface::at(scene, ray, hit);
+    let surface: Place<R> = Place::at(scene, ray, hit);
     met.push((hit.on.slot, DVec3::from([0, 1, 2].map(|axis| surface.point.axis(axis).to_f64()))));
     let along = R::from_f64(2.0) * surface.normal.dot(ray.direction);
     let direction = ray.direction + surface.normal * -along;
@@ -38,7 +38,8 @@ fn in_double_precision(scene: &FlatScene, ray: &Ray<f32>) -> Reflections {
         && let Some(hit) = traverse::intersect(scene, &ray, &exclusion, &mut Counters::default())
     {
         ray = reflect(scene, &ray, &hit, &mut met);
-        exclusion = Exclusion { instance: 0, primitive: hit.on.slot, how: Exclude::Leaving, ..Exclusion::NOTHING };
+        exclusion =
+            Exclusion { instance: 0, primitive: hit.on.slot, how: Exclude::Leaving, ..Exclusion::NOTHING };
     }
     met
 }

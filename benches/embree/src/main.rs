@@ -9,7 +9,6 @@ mod embree;
 mod inputs;
 mod luxel;
 mod meshes;
-#[path = "../../structures/model.rs"]
 mod model;
 mod obvhs_crate;
 

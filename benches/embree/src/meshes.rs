@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use cpu_time::ProcessTime;
 use glam::{Vec3, Vec3A};
 use luxel_accel::{BvhOptions, BvhQuality, MeshBvh, build_mesh, sah_cost};
 use luxel_cpu::{Query, Wanted, mesh};
@@ -158,10 +159,35 @@ pub fn compare(path: &Path, rounds: usize) {
     let ids: Vec<u32> = (0..model.indices.len() as u32).collect();
     let built = build_mesh(&model.positions, &model.indices, &ids, &largest_axis).unwrap();
     println!("  luxel largest axis {:.2}", sah_cost(&built.nodes));
+    scales(&model);
     rates(&model, &engines, rounds);
 }
 
-/// Milliseconds, wall and CPU.
+/// What the same rays meet when model and rays are made smaller and larger. Positions round differently at another
+/// size, so that a ray beside an edge may meet the neighbour; no hit may be lost or won.
+fn scales(model: &Model) {
+    let rays = primary_rays(model);
+    let mut expected: Vec<Option<u32>> = Vec::new();
+    for factor in [1.0, 0.01, 100.0] {
+        let engine = Luxel::over(build_luxel(&model.scaled(factor), BvhQuality::Medium));
+        let scaled: Vec<Ray<f32>> =
+            rays.iter().map(|ray| Ray::new(ray.origin * factor, ray.direction)).collect();
+        let mut hits = vec![None; rays.len()];
+        engine.trace(&scaled, &mut hits);
+        let ids: Vec<Option<u32>> = hits.iter().map(|hit| hit.map(|(_, id)| id)).collect();
+        if expected.is_empty() {
+            expected = ids.clone();
+        }
+        let others = ids.iter().zip(&expected).filter(|(a, b)| a != b).count();
+        let found = ids.iter().flatten().count();
+        println!(
+            "luxel at × {factor}: {found} of {} rays hit, {others} another triangle than at × 1",
+            rays.len()
+        );
+    }
+}
+
+/// Milliseconds.
 fn builds(model: &Model, rounds: usize, threads: usize) {
     type Build<'a> = (String, Box<dyn Fn() + Sync + 'a>);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -175,7 +201,7 @@ fn builds(model: &Model, rounds: usize, threads: usize) {
         all.push((name, Box::new(move || drop(build_luxel(model, quality)))));
     }
     let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
-    let seconds = in_turns(rounds, all.len(), |i| pool.install(|| (all[i].1)()));
+    let seconds = in_turns(rounds, threads, all.len(), |i| pool.install(|| (all[i].1)()));
     report(&format!("build on {threads} thread(s), milliseconds"), &names, &seconds, |s| s * 1e3);
 }
 
@@ -202,7 +228,8 @@ fn rates(model: &Model, engines: &[(String, Box<dyn AnyHit>)], rounds: usize) {
             let closest = |engine: &dyn AnyHit| {
                 rays.par_chunks(BLOCK).for_each(|rays| engine.trace(rays, &mut [None; BLOCK][..rays.len()]));
             };
-            let seconds = in_turns(rounds, engines.len(), |i| pool.install(|| closest(&*engines[i].1)));
+            let seconds =
+                in_turns(rounds, threads, engines.len(), |i| pool.install(|| closest(&*engines[i].1)));
             let title = format!("{kind}, closest hit, {threads} thread(s), Mrays/s, hits {found:?}");
             report(&title, &names, &seconds, |s| rays.len() as f64 / s * 1e-6);
             for (name, engine) in engines.iter().filter(|_| threads == 1) {
@@ -216,23 +243,26 @@ fn rates(model: &Model, engines: &[(String, Box<dyn AnyHit>)], rounds: usize) {
             let any = |engine: &dyn AnyHit| -> usize {
                 rays.par_chunks(BLOCK).map(|rays| engine.count_occluded(rays)).sum()
             };
-            let seconds = in_turns(rounds, engines.len(), |i| _ = pool.install(|| any(&*engines[i].1)));
+            let seconds =
+                in_turns(rounds, threads, engines.len(), |i| _ = pool.install(|| any(&*engines[i].1)));
             let title = format!("{kind}, any hit, {threads} thread(s), Mrays/s, hits {found:?}");
             report(&title, &names, &seconds, |s| rays.len() as f64 / s * 1e-6);
         }
     }
 }
 
-/// Wall seconds of every engine in every round, engine by engine; the first round does not count.
-fn in_turns(rounds: usize, count: usize, mut work: impl FnMut(usize)) -> Vec<Vec<f64>> {
+/// Seconds of every engine in every round, engine by engine; the first round does not count. On one thread those of the
+/// processor, which other work on the machine disturbs less, else those of the clock.
+fn in_turns(rounds: usize, threads: usize, count: usize, mut work: impl FnMut(usize)) -> Vec<Vec<f64>> {
     let mut seconds = vec![Vec::new(); count];
     for round in 0..=rounds {
         for turn in 0..count {
             let one = (turn + round) % count;
-            let start = Instant::now();
+            let (wall, cpu) = (Instant::now(), ProcessTime::now());
             work(one);
+            let spent = if threads == 1 { cpu.elapsed() } else { wall.elapsed() };
             if round > 0 {
-                seconds[one].push(start.elapsed().as_secs_f64());
+                seconds[one].push(spent.as_secs_f64());
             }
         }
     }

@@ -11,7 +11,7 @@
 //! the root is the child of one node, `skip` is the next node behind a subtree in depth-first order, every primitive
 //! is in exactly one leaf, boxes are equal to the union of their primitives' boxes.
 //!
-//! Higher presets ([`BvhQuality`]) improve the finished tree by reinsertion (`reinsert.rs`). There are no spatial splits:
+//! Presets ([`BvhQuality`]) improve the finished tree by reinsertion (`reinsert.rs`): its top (`top.rs`), or all of it. There are no spatial splits:
 //! a primitive stands in one leaf, and a hit is known by its place there.
 //!
 //! The result is a pure function of the input: threads share no state, only exact operations (minimum, maximum,
@@ -27,6 +27,7 @@ mod primitive;
 mod reinsert;
 mod split;
 mod sweep;
+mod top;
 mod validate;
 
 use luxel_flat::{BvhNode, LEAF_COUNT_SHIFT};
@@ -72,6 +73,9 @@ pub fn build_bvh(boxes: &[Aabb<f32>], options: &BvhOptions) -> Result<Bvh, Accel
     // Single primitives can be moved about; which share a leaf is decided afterwards.
     let first = BvhOptions { max_leaf_size: if is_optimized { 1 } else { options.max_leaf_size }, ..options };
     let (mut nodes, mut order) = build::build(boxes, &first);
+    if options.top_rounds > 0 && options.split == BvhSplit::Sah && !nodes.is_empty() {
+        nodes = top::optimize(nodes, &options);
+    }
     if is_optimized && !nodes.is_empty() {
         let mut tree = LinkedTree::new(&nodes);
         reinsert::optimize(&mut tree, &options);

@@ -34,7 +34,9 @@ shared_const! {
     pub const ALBEDO_COSINES: u32 = luxel_geom::albedo::COSINES;
     /// Roughnesses in the albedo tables of coat and glass (`luxel_geom::albedo`).
     pub const ALBEDO_ROUGHNESSES: u32 = luxel_geom::albedo::ROUGHNESSES;
-    /// Roughnesses in the tables of average albedos (`luxel_geom::albedo`).
+    /// Roughnesses in the averages of the conductor's albedo table (`luxel_geom::albedo`).
+    pub const ALBEDO_CONDUCTOR_AVERAGE_ROUGHNESSES: u32 = luxel_geom::albedo::CONDUCTOR_AVERAGE_ROUGHNESSES;
+    /// Roughnesses in the averages of coat and glass (`luxel_geom::albedo`).
     pub const ALBEDO_AVERAGE_ROUGHNESSES: u32 = luxel_geom::albedo::AVERAGE_ROUGHNESSES;
     /// Indices of refraction in the coat's albedo table (`luxel_geom::albedo`).
     pub const ALBEDO_COAT_INDICES: u32 = luxel_geom::albedo::COAT_INDICES;

@@ -154,11 +154,13 @@ impl<R: Real> TriangleRay<R> {
         let z = s.z.to_array();
         let t = (weights[0] * z[0] + (weights[1] * z[1] + weights[2] * z[2])) * self.inv_z;
         let v = corners.vertices();
-        let t = ahead(t, t_error(s, det, self.inv_z), || is_plane_ahead::<R>(ray, &v))?;
         let interval = bounds::<R>(&v).interval(ray);
-        let held = interval.clamp(t);
-        let is_wanted = interval.overlaps(ray.t_min, ray.t_max) && held > ray.t_min && held <= ray.t_max;
-        is_wanted.then_some(TriangleHit { t: held, u: weights[1], v: weights[2] })
+        if !interval.overlaps(ray.t_min, ray.t_max) {
+            return None;
+        }
+        let t = ahead(t, t_error(s, det, self.inv_z), || is_plane_ahead::<R>(ray, &v))?;
+        let t = interval.clamp(t);
+        (t > ray.t_min && t <= ray.t_max).then_some(TriangleHit { t, u: weights[1], v: weights[2] })
     }
 }
 

@@ -119,29 +119,37 @@ fn losses_of_glass_are_those_of_the_other_integral() {
     assert!(worst < 3e-3 && mean < 7e-4, "{worst:e} {mean:e}");
 }
 
-/// 2 ∫ f(cos) cos dcos.
+/// 2 ∫ f(cos) cos dcos, in the logarithm of the cosine: losses stand at cosines of about α.
 fn average(f: impl Fn(f64) -> f64) -> f64 {
-    const COUNT: u32 = 10_000;
-    (0..COUNT).map(|k| f(((f64::from(k) + 0.5) / f64::from(COUNT)).sqrt())).sum::<f64>() / f64::from(COUNT)
+    const COUNT: u32 = 4000;
+    const RANGE: f64 = 16.0;
+    let at = |k: u32| (-RANGE * (f64::from(k) + 0.5) / f64::from(COUNT)).exp();
+    (0..COUNT).map(at).map(|cos| 2.0 * f(cos) * cos * cos).sum::<f64>() * RANGE / f64::from(COUNT)
 }
 
 #[test]
 fn averages_are_those_of_the_lookups() {
     let mut random = Random::new(4);
+    let mut worst: f64 = 0.0;
     for _ in 0..200 {
         let (_, roughness, eta) = case(&mut random, 0.1);
         let conductor = average(|c| lookup::conductor_loss(&TABLES, c, roughness));
         let found = lookup::conductor_loss_average(&TABLES, roughness);
-        assert!((conductor - found).abs() < 3e-4, "{roughness}: {conductor} {found}");
+        let off = (found / conductor - 1.0).abs();
+        worst = worst.max(off);
+        assert!(off < 5e-3, "{roughness}: {conductor} {found}");
         let coat = average(|c| lookup::coat_albedo(&TABLES, c, roughness, eta));
         let found = lookup::coat_albedo_average(&TABLES, roughness, eta);
         assert!((coat - found).abs() < 1e-3, "{roughness} {eta}: {coat} {found}");
         for eta in [eta, eta.recip()] {
             let glass = average(|c| lookup::glass_loss(&TABLES, c, roughness, eta));
             let found = lookup::glass_loss_average(&TABLES, roughness, eta);
-            assert!((glass - found).abs() < 5e-4, "{roughness} {eta}: {glass} {found}");
+            let off = (found / glass - 1.0).abs();
+            worst = worst.max(off);
+            assert!(off < 5e-3, "{roughness} {eta}: {glass} {found}");
         }
     }
+    println!("largest relative error of an average loss: {worst:e}");
 }
 
 #[test]

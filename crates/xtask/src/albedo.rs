@@ -49,7 +49,7 @@ pub(crate) fn write() -> Result<()> {
 }
 
 /// Every table in its place. Averages are those of what the lookups give, so that both agree where they are interpolated;
-/// those of losses are written as their fourth roots.
+/// those of losses are written as their square roots.
 fn tables() -> Vec<f32> {
     let rule = Square::new();
     let mut tables = vec![0.0; albedo::LENGTH as usize];
@@ -62,14 +62,19 @@ fn tables() -> Vec<f32> {
         let eta = axes::glass_index_at(place);
         rule.mean(cos, roughness, |s| 1.0 - s.through_glass(eta))
     });
-    averages(&mut tables, albedo::CONDUCTOR_AVERAGES, 1, |t, _, r| {
-        average(r, |c| lookup::conductor_loss(t, c, r)).sqrt().sqrt()
-    });
-    averages(&mut tables, albedo::COAT_AVERAGES, albedo::COAT_INDICES, |t, p, r| {
+    averages(
+        &mut tables,
+        albedo::CONDUCTOR_AVERAGES,
+        [1, albedo::CONDUCTOR_AVERAGE_ROUGHNESSES],
+        |t, _, r| average(r, |c| lookup::conductor_loss(t, c, r)).sqrt(),
+    );
+    let coat = [albedo::COAT_INDICES, albedo::AVERAGE_ROUGHNESSES];
+    averages(&mut tables, albedo::COAT_AVERAGES, coat, |t, p, r| {
         average(r, |c| lookup::coat_albedo(t, c, r, axes::coat_index_at(p)))
     });
-    averages(&mut tables, albedo::GLASS_AVERAGES, albedo::GLASS_INDICES, |t, p, r| {
-        average(r, |c| lookup::glass_loss(t, c, r, axes::glass_index_at(p))).sqrt().sqrt()
+    let glass = [albedo::GLASS_INDICES, albedo::AVERAGE_ROUGHNESSES];
+    averages(&mut tables, albedo::GLASS_AVERAGES, glass, |t, p, r| {
+        average(r, |c| lookup::glass_loss(t, c, r, axes::glass_index_at(p))).sqrt()
     });
     tables
 }
@@ -99,8 +104,12 @@ fn fill(
 }
 
 /// Writes value(place of the index, roughness) over the entries of a table of averages from `first` on.
-fn averages(tables: &mut [f32], first: u32, indices: u32, value: impl Fn(&[f32], f64, f64) -> f64) {
-    let rows = albedo::AVERAGE_ROUGHNESSES;
+fn averages(
+    tables: &mut [f32],
+    first: u32,
+    [indices, rows]: [u32; 2],
+    value: impl Fn(&[f32], f64, f64) -> f64,
+) {
     for k in 0..indices {
         for i in 0..rows {
             let mean = value(tables, place(k, indices), axes::roughness_at(place(i, rows)));

@@ -27,7 +27,8 @@ mod vulkan;
 
 use std::process::ExitCode;
 
-const USAGE: &str = "usage: cargo xtask test | ci | generate [--check | albedo] | soak [NAMES…] | bench [ARGS…]";
+const USAGE: &str =
+    "usage: cargo xtask test | ci | generate [--check | albedo] | soak [NAMES…] | bench [ARGS…]";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -2,10 +2,18 @@
 use glam::Vec4;
 use rayon::prelude::*;
 
+use super::MAX_BINS;
 use super::primitive::{Bounds, Primitive};
 
 /// Larger sets are binned in parallel, in pieces of this size.
 const CHUNK: usize = 16_384;
+
+/// Added to a number below 2²², it leaves the nearest whole number in the last bits: faster than a conversion, which asks
+/// whether the number fits.
+const TO_BITS: f32 = (1 << 23) as f32;
+
+/// The bits that a bin takes.
+const PLACE_BITS: u32 = MAX_BINS.next_power_of_two() - 1;
 
 /// Maps centres to bins.
 pub(super) struct Grid {
@@ -51,17 +59,25 @@ impl Grid {
         Self { lo: centers.lo, scale: bins as f32 / (centers.hi - centers.lo), bins }
     }
 
+    /// The bin of a centre along each axis, in the last bits.
+    #[inline]
+    fn keys(&self, center: Vec4) -> Vec4 {
+        let place = (center - self.lo) * self.scale - 0.5;
+        place.max(Vec4::ZERO).min(Vec4::splat(self.bins as f32 - 1.0)) + TO_BITS
+    }
+
     /// The bin of a centre along each axis.
     #[inline]
     fn places(&self, center: Vec4) -> [usize; 3] {
-        let [x, y, z, _] = ((center - self.lo) * self.scale).to_array();
-        [x, y, z].map(|place| (place as i32).clamp(0, self.bins as i32 - 1) as usize)
+        let [x, y, z, _] = self.keys(center).to_array();
+        [x, y, z].map(|key| (key.to_bits() & PLACE_BITS) as usize)
     }
 
     /// True if a centre lies before a cut.
     #[inline]
     pub(super) fn is_below(&self, center: Vec4, cut: &Cut) -> bool {
-        self.places(center)[cut.axis] < cut.bin
+        let cut_key = Vec4::splat(cut.bin as f32 + TO_BITS);
+        self.keys(center).cmplt(cut_key).bitmask() >> cut.axis & 1 == 1
     }
 
     fn can_bin(&self, axis: usize) -> bool {

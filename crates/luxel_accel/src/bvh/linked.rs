@@ -50,6 +50,11 @@ pub(super) fn sibling(node: u32) -> u32 {
 impl LinkedTree {
     /// The links of a tree as built.
     pub(super) fn new(nodes: &[BvhNode]) -> Self {
+        Self::with_heights(nodes, |_| 0)
+    }
+
+    /// The same of the top of a tree; `height_of` knows the levels below a leaf of it by the first entry of the leaf.
+    pub(super) fn with_heights(nodes: &[BvhNode], height_of: impl Fn(u32) -> u8) -> Self {
         let bounds = |node: &BvhNode| Bounds {
             lo: Vec3::from(node.lo).extend(0.0),
             hi: Vec3::from(node.hi).extend(0.0),
@@ -58,7 +63,8 @@ impl LinkedTree {
         let linked = |node: &BvhNode| {
             let bounds = bounds(node);
             let area = bounds.half_area(unit);
-            LinkedNode { bounds, area, leaf: node.leaf, parent: NONE, height: 0 }
+            let height = if node.is_leaf() { u32::from(height_of(node.primitives().0)) } else { 0 };
+            LinkedNode { bounds, area, leaf: node.leaf, parent: NONE, height }
         };
         let mut tree = Self { nodes: nodes.iter().map(linked).collect(), unit };
         for index in (0..nodes.len() as u32).rev() {

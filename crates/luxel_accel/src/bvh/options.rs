@@ -35,7 +35,10 @@ pub struct BvhOptions {
     pub max_leaf_size: u32,
     /// Cost of a step through an inner node in units of one primitive test.
     pub traversal_cost: f32,
-    /// What is done once the tree stands.
+    /// Rounds of reinsertion among the largest boxes, what is below them moving as a whole. With [`BvhSplit::Sah`] only:
+    /// the other split is there to be compared with.
+    pub top_rounds: u32,
+    /// What is done after that.
     pub reinsertion: Reinsertion,
 }
 
@@ -44,22 +47,23 @@ pub struct BvhOptions {
 pub enum BvhQuality {
     /// Few bins.
     Fast,
-    /// The common binned build.
+    /// The common binned build, and some reinsertion near the root.
     #[default]
     Medium,
-    /// Some reinsertion.
+    /// Some reinsertion everywhere.
     High,
     /// Reinsertion for as long as it gains.
     Best,
 }
 
 impl BvhOptions {
-    /// Those of [`BvhQuality::Medium`].
+    /// The common binned build: [`BvhQuality::Medium`] without its reinsertion.
     pub const MEDIUM: Self = Self {
         split: BvhSplit::Sah,
         bins: 16,
         max_leaf_size: MAX_LEAF_SIZE,
         traversal_cost: 1.0,
+        top_rounds: 0,
         reinsertion: Reinsertion { rounds: 0, share: 0.0 },
     };
 
@@ -95,16 +99,17 @@ impl BvhQuality {
 
     /// What it stands for.
     pub fn options(self) -> BvhOptions {
-        let reinserted = |rounds, share| BvhOptions {
+        let reinserted = |top_rounds, rounds, share| BvhOptions {
             bins: 32,
+            top_rounds,
             reinsertion: Reinsertion { rounds, share },
             ..BvhOptions::MEDIUM
         };
         match self {
             Self::Fast => BvhOptions { bins: 8, ..BvhOptions::MEDIUM },
-            Self::Medium => BvhOptions::MEDIUM,
-            Self::High => reinserted(2, 0.1),
-            Self::Best => reinserted(12, 0.5),
+            Self::Medium => BvhOptions { top_rounds: 4, ..BvhOptions::MEDIUM },
+            Self::High => reinserted(4, 2, 0.1),
+            Self::Best => reinserted(0, 12, 0.5),
         }
     }
 }

@@ -1,4 +1,6 @@
 //! Where a set of primitives is cut in two.
+use glam::Vec4;
+
 use super::bins::{Bins, Cut, Grid};
 use super::primitive::{Bounds, Primitive};
 use super::sweep::{self, MAX_SWEEP};
@@ -89,8 +91,11 @@ fn partition(primitives: &mut [Primitive], grid: &Grid, cut: &Cut) -> Halves {
         let is_below = grid.is_below(center, cut);
         primitives.swap(i, middle);
         middle += usize::from(is_below);
-        let side = &mut centers[usize::from(!is_below)];
-        *side = side.with_point(center);
+        // The other side gets a point that changes nothing.
+        for (side, is_here) in centers.iter_mut().zip([is_below, !is_below]) {
+            let aside = Vec4::splat(if is_here { f32::MIN } else { f32::MAX });
+            *side = Bounds { lo: side.lo.min(center.max(aside)), hi: side.hi.max(center.min(-aside)) };
+        }
     }
     Halves { middle, centers: Some(centers) }
 }

@@ -37,12 +37,11 @@ fn plane<R: Real>(tables: &[f32], first: u32, rows: u32, columns: u32, row: R, c
     row.mix(|i| column.mix(|j| entry(tables, first + i * columns + j)))
 }
 
-/// An average loss, from the row of its fourth roots.
-fn average_loss<R: Real>(tables: &[f32], first: u32, roughness: R) -> R {
-    let column = Between::at(axes::roughness_place(roughness), super::AVERAGE_ROUGHNESSES);
+/// An average loss, from the `count` square roots of its row.
+fn average_loss<R: Real>(tables: &[f32], first: u32, count: u32, roughness: R) -> R {
+    let column = Between::at(axes::roughness_place(roughness), count);
     let root: R = column.mix(|i| entry(tables, first + i));
-    let square = root * root;
-    square * square
+    root * root
 }
 
 /// Entry of a table of coat or glass.
@@ -63,7 +62,7 @@ pub fn conductor_loss<R: Real>(tables: &[f32], cos: R, roughness: R) -> R {
 /// [`conductor_loss`] averaged over cosine-weighted directions.
 #[inline]
 pub fn conductor_loss_average<R: Real>(tables: &[f32], roughness: R) -> R {
-    average_loss(tables, super::CONDUCTOR_AVERAGES, roughness)
+    average_loss(tables, super::CONDUCTOR_AVERAGES, super::CONDUCTOR_AVERAGE_ROUGHNESSES, roughness)
 }
 
 /// Share of the light from a direction that a rough dielectric coat of index `eta` ≥ 1 reflects.
@@ -92,7 +91,8 @@ pub fn glass_loss<R: Real>(tables: &[f32], cos: R, roughness: R, eta: R) -> R {
 #[inline]
 pub fn glass_loss_average<R: Real>(tables: &[f32], roughness: R, eta: R) -> R {
     Between::at(axes::glass_index_place(eta), super::GLASS_INDICES).mix(|i| {
-        average_loss(tables, super::GLASS_AVERAGES + i * super::AVERAGE_ROUGHNESSES, roughness)
+        let first = super::GLASS_AVERAGES + i * super::AVERAGE_ROUGHNESSES;
+        average_loss(tables, first, super::AVERAGE_ROUGHNESSES, roughness)
     })
 }
 

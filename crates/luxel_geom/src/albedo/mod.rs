@@ -11,8 +11,8 @@
 //! | glass | loss: 1 − albedo of reflection and transmission together, as energy (no factor η²) | index, roughness, cosine |
 //!
 //! and, for each, the cosine-weighted average over directions, 2 ∫ · cos dcos (for the coat: of the albedo itself).
-//! Losses, not albedos, so that a small loss keeps its digits. An average loss grows with the fourth power of the
-//! roughness; its fourth root is stored, which is nearly a straight line.
+//! Losses, not albedos, so that a small loss keeps its digits. Of an average loss the square root is stored, at
+//! many roughnesses, so that it is in step with the losses even where they grow with the fourth power of the roughness.
 //!
 //! `cargo xtask generate albedo` computes them by quadrature in f64 (`crates/xtask/src/albedo.rs`). The lookups are in
 //! [`lookup`], the warps of the axes in [`axes`]; `shaders/geom/albedo.wesl` reads the same numbers from a buffer.
@@ -31,13 +31,15 @@ pub const ROUGHNESSES: u32 = 24;
 pub const COAT_INDICES: u32 = 16;
 /// Relative indices in the glass table, from 1 / [`axes::MAX_ETA`] to [`axes::MAX_ETA`]; the middle one is 1.
 pub const GLASS_INDICES: u32 = 65;
-/// Roughnesses in the tables of averages.
-pub const AVERAGE_ROUGHNESSES: u32 = 64;
+/// Roughnesses in the conductor's averages: those of its table, and 15 between any two.
+pub const CONDUCTOR_AVERAGE_ROUGHNESSES: u32 = 16 * (CONDUCTOR_ROUGHNESSES - 1) + 1;
+/// Roughnesses in the averages of coat and glass, likewise.
+pub const AVERAGE_ROUGHNESSES: u32 = 16 * (ROUGHNESSES - 1) + 1;
 
 /// Where the conductor's averages start; its table starts at 0.
 pub const CONDUCTOR_AVERAGES: u32 = CONDUCTOR_COSINES * CONDUCTOR_ROUGHNESSES;
 /// Where the coat's table starts.
-pub const COAT: u32 = CONDUCTOR_AVERAGES + AVERAGE_ROUGHNESSES;
+pub const COAT: u32 = CONDUCTOR_AVERAGES + CONDUCTOR_AVERAGE_ROUGHNESSES;
 /// Where the coat's averages start.
 pub const COAT_AVERAGES: u32 = COAT + COSINES * ROUGHNESSES * COAT_INDICES;
 /// Where the glass table starts.

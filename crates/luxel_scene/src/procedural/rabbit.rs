@@ -157,17 +157,20 @@ mod tests {
             assert_eq!(mesh.positions.len() as u32, 10 * frequency * frequency + 2);
             let heights = mesh.positions.iter().map(|p| p.y);
             assert_eq!((heights.clone().fold(9.0, f32::min), heights.fold(-9.0, f32::max)), (0.0, 1.0));
-            assert!(mesh.positions.iter().all(|p| p.is_finite() && p.x.abs() < 0.6 && p.z.abs() < 0.6));
+            // No corner of the coarsest ones lies on an ear, so that they are wider.
+            let most = if frequency < 7 { 2.0 } else { 0.5 };
+            let is_inside = |p: &Vec3| p.is_finite() && p.x.abs() < most && p.z.abs() < most;
+            assert!(mesh.positions.iter().all(is_inside));
         }
     }
 
     #[test]
     fn ears_stand_apart_and_no_triangle_is_empty() {
         let mesh = rabbit(40);
-        let is_ear = |p: &&Vec3| p.y > 0.85;
+        let is_ear = |p: &&Vec3| p.y > 0.8;
         let (left, right): (Vec<&Vec3>, Vec<&Vec3>) =
             mesh.positions.iter().filter(is_ear).partition(|p| p.x > 0.0);
-        assert!(left.len() > 100 && right.len() > 100);
+        assert!(left.len() > 50 && right.len() > 50);
         assert!(left.iter().all(|p| p.x > 0.05) && right.iter().all(|p| p.x < -0.05));
         for corners in &mesh.triangles {
             let [a, b, c] = corners.map(|index| mesh.positions[index as usize]);

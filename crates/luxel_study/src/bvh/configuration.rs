@@ -2,8 +2,8 @@
 use luxel_engine::{MeshAccel, MeshQuality, MeshStructure};
 use luxel_scene::MeshSplit;
 
-use super::scene::Staging;
 use super::select::{LARGEST_AXIS, SAH};
+use super::staging::Staging;
 
 /// How one picture of a scene is made.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,15 +12,17 @@
 //! Invariants: as of every study (`kit`); figures 6 to 14 are always there, if only to say that they lack runs.
 mod configuration;
 mod figures;
-#[cfg(test)]
-mod files;
+mod levels;
 mod page;
 mod plan;
 mod record;
 mod scene;
 mod select;
+mod staging;
 mod study;
 mod summary;
+#[cfg(test)]
+mod tests;
 
 use std::path::Path;
 

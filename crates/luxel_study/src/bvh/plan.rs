@@ -4,7 +4,8 @@ use luxel_scene::{MeshSplit, Surface};
 
 use super::configuration::Configuration;
 use super::record::Sweep;
-use super::scene::{BUNNY_FREQUENCY, BunnyModel, Scene, Staging, View};
+use super::scene::{BUNNY_FREQUENCY, BunnyModel, Scene};
+use super::staging::{Staging, View};
 use super::study::BvhStudy;
 use crate::kit::plan::Plan as KitPlan;
 

@@ -8,17 +8,15 @@ use std::path::{Path, PathBuf};
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
 use luxel_scene::{
-    ActiveCamera, AssetId, Assets, Camera, Dropped, GlobalTransform, Material, MeshAsset, MeshInstance,
-    MeshSource, Name, PointLight, SceneError, SmoothNormals, Surface, Transform, TriangleMesh, Visibility,
+    AssetId, Assets, Camera, Material, MeshAsset, MeshInstance, MeshSource, SceneError, Surface, Transform,
 };
 
+use super::levels;
+use super::staging::Moved;
 use crate::StudyError;
 
 /// Fineness of the rabbit that stands for the bunny: 69,620 triangles.
 pub(crate) const BUNNY_FREQUENCY: u32 = 59;
-
-/// Edges that are sharper than this stay edges when normals are interpolated, radians.
-const CREASE: f32 = 1.2;
 
 /// The model that figures show as the bunny.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -67,71 +65,16 @@ pub(crate) enum Scene {
     OneOrTwoLevels(BunnyModel),
 }
 
-/// What a configuration changes in its scene's world.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Staging {
-    pub(crate) view: View,
-    /// Normals of the bunny are interpolated.
-    pub(crate) is_smooth: bool,
-    /// The bunny's surface instead of its own.
-    pub(crate) surface: Option<Surface>,
-    /// Part of the floor that is mirror, where it is semi-specular.
-    pub(crate) smoothness: Option<f32>,
-    /// All triangles in one mesh, where the scene has both.
-    pub(crate) is_one_mesh: bool,
-}
-
-/// Where the camera is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum View {
-    /// The scene's own.
-    #[default]
-    Scene,
-    Far,
-    Near,
-    /// In the middle of the bunny.
-    Inside,
-    /// A window around the highest point of the bunny.
-    Ear,
-    /// So near that single triangles are seen.
-    Close,
-}
-
-impl View {
-    /// Its name in records.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Scene => "scene",
-            Self::Far => "far",
-            Self::Near => "near",
-            Self::Inside => "inside",
-            Self::Ear => "ear",
-            Self::Close => "close",
-        }
-    }
-}
-
-/// The camera that configurations move; the file's own stays where it is.
-#[derive(Component)]
-struct Moved;
-
 /// The bunny: its own surface and its highest point in the world.
 #[derive(Component)]
-struct Bunny {
-    surface: Surface,
-    tip: DVec3,
+pub(super) struct Bunny {
+    pub(super) surface: Surface,
+    pub(super) tip: DVec3,
 }
 
 /// The floor that is part mirror.
 #[derive(Component)]
-struct MirrorFloor;
-
-/// An object that is shown if meshes are one each, or one that is shown if all are one.
-#[derive(Component, PartialEq)]
-enum Level {
-    Two,
-    One,
-}
+pub(super) struct MirrorFloor;
 
 impl Scene {
     /// Its name in records.
@@ -191,37 +134,10 @@ pub(crate) fn world(scene: &Scene) -> Result<World, StudyError> {
     }
     mark_mirror_floor(&mut world);
     if let Scene::OneOrTwoLevels(_) = scene {
-        make_both_levels(&mut world);
+        levels::make_both(&mut world);
     }
     luxel_scene::spawn(&mut world, (Transform::default(), Camera::pinhole(0.6), Moved));
     Ok(world)
-}
-
-/// Changes a world to what a configuration wants to see.
-pub(crate) fn stage(world: &mut World, staging: &Staging) {
-    if staging.view != View::Scene {
-        move_camera(world, staging.view);
-    }
-    let mut bunnies = world.query::<(Entity, &Bunny)>();
-    let bunnies: Vec<(Entity, Surface)> = bunnies.iter(world).map(|(e, bunny)| (e, bunny.surface)).collect();
-    for (entity, own) in bunnies {
-        let mut bunny = world.entity_mut(entity);
-        if let Some(mut material) = bunny.get_mut::<Material>() {
-            material.set_if_neq(staging.surface.unwrap_or(own).into());
-        }
-        match (staging.is_smooth, bunny.contains::<SmoothNormals>()) {
-            (true, false) => drop(bunny.insert(SmoothNormals { crease_angle: CREASE })),
-            (false, true) => drop(bunny.remove::<SmoothNormals>()),
-            _ => {}
-        }
-    }
-    if let Some(smoothness) = staging.smoothness {
-        set_smoothness(world, smoothness);
-    }
-    let mut levels = world.query::<(&Level, &mut Visibility)>();
-    for (level, mut visibility) in levels.iter_mut(world) {
-        visibility.set_if_neq(Visibility((*level == Level::One) == staging.is_one_mesh));
-    }
 }
 
 /// Loads a scene file that is built into the program.
@@ -290,84 +206,11 @@ fn mark_mirror_floor(world: &mut World) {
     }
 }
 
-fn set_smoothness(world: &mut World, smoothness: f32) {
-    let mut floors = world.query_filtered::<&mut Material, With<MirrorFloor>>();
-    for mut material in floors.iter_mut(world) {
-        if let Surface::SemiSpecular { albedo, .. } = material.surface {
-            material.set_if_neq(Surface::SemiSpecular { albedo, smoothness }.into());
-        }
-    }
-}
-
-/// Looks at the bunny from where a view is.
-fn move_camera(world: &mut World, view: View) {
-    let mut bunnies = world.query::<(&Bunny, &Transform)>();
-    let Some((tip, place)) = bunnies.iter(world).next().map(|(bunny, place)| (bunny.tip, *place)) else {
-        return;
-    };
-    let size = (tip.y - place.translation.y).abs();
-    let middle = DVec3::new(place.translation.x, tip.y - 0.6 * size, place.translation.z);
-    let (eye, target, fov) = match view {
-        View::Far => (middle + size * DVec3::new(2.4, 1.4, 5.2), middle, 0.35),
-        View::Near => (middle + size * DVec3::new(0.15, 0.3, 0.78), middle + DVec3::Y * 0.1 * size, 0.8),
-        View::Inside => (middle, tip, 1.2),
-        View::Close => {
-            (tip + size * DVec3::new(0.1, -0.1, 0.75), tip + size * DVec3::new(-0.13, -0.26, 0.0), 0.42)
-        }
-        View::Scene | View::Ear => {
-            (tip + size * DVec3::new(0.25, 0.12, 0.6), tip - DVec3::Y * 0.02 * size, 0.16)
-        }
-    };
-    let mut cameras = world.query_filtered::<Entity, With<Camera>>();
-    for camera in cameras.iter(world).collect::<Vec<_>>() {
-        world.entity_mut(camera).remove::<ActiveCamera>();
-    }
-    let mut moved = world.query_filtered::<Entity, With<Moved>>();
-    for camera in moved.iter(world).collect::<Vec<_>>() {
-        let looking = (Transform::looking_at(eye, target), Camera::pinhole(fov), ActiveCamera);
-        world.entity_mut(camera).insert(looking);
-    }
-}
-
-/// Gives all objects one grey material, takes away what is no mesh, adds a point light, and a mesh of all triangles
-/// beside the objects.
-fn make_both_levels(world: &mut World) {
-    let grey = Material::lambert(Vec3::splat(0.6));
-    let mut spheres = world.query_filtered::<Entity, With<luxel_scene::Sphere>>();
-    for sphere in spheres.iter(world).collect::<Vec<_>>() {
-        world.despawn(sphere);
-    }
-    let mut objects = world.query::<(Entity, &MeshInstance, &Transform, &Name)>();
-    let objects: Vec<(Entity, AssetId, Transform)> =
-        objects.iter(world).map(|(e, instance, place, _)| (e, instance.mesh, *place)).collect();
-    let mut whole = TriangleMesh::default();
-    for (entity, id, place) in objects {
-        if let Some(asset) = world.resource::<Assets>().mesh(id).cloned() {
-            append(&mut whole, &asset.mesh, &place);
-        }
-        let mut object = world.entity_mut(entity);
-        object.insert((grey, Level::Two, Visibility(true)));
-        if let Some(mut bunny) = object.get_mut::<Bunny>() {
-            bunny.surface = grey.surface;
-        }
-    }
-    let whole = MeshAsset { source: MeshSource::Quad, mesh: whole, dropped: Dropped::default() };
-    let mesh = world.resource_mut::<Assets>().insert_mesh(whole);
-    luxel_scene::spawn(world, (MeshInstance { mesh }, grey, Level::One, Visibility(false)));
-    let light = PointLight { intensity: Vec3::splat(4.0) };
-    luxel_scene::spawn(world, (Transform::at(DVec3::new(0.4, 2.3, 0.6)), light, GlobalTransform::default()));
-}
-
-fn append(whole: &mut TriangleMesh, mesh: &TriangleMesh, place: &Transform) {
-    let first = whole.positions.len() as u32;
-    let affine = place.affine();
-    whole.positions.extend(mesh.positions.iter().map(|p| affine.transform_point3(p.as_dvec3()).as_vec3()));
-    whole.triangles.extend(mesh.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
-    whole.triangle_ids = (0..whole.triangles.len() as u32).collect();
-}
-
 #[cfg(test)]
 mod tests {
+    use luxel_scene::{ActiveCamera, Visibility};
+
+    use super::super::staging::{Staging, View, stage};
     use super::*;
 
     fn all() -> Vec<Scene> {

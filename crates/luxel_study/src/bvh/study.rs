@@ -9,6 +9,7 @@ use super::page::{TITLE, page};
 use super::plan::{BOUNCES, Group};
 use super::record::{FORMAT, Run, STUDY, Sweep};
 use super::scene::{self, Scene};
+use super::staging;
 use crate::StudyError;
 use crate::kit::measured::{Look, Measured, rounded};
 use crate::kit::picture::png;
@@ -52,7 +53,7 @@ impl Study for BvhStudy {
     }
 
     fn configure(world: &mut World, configuration: &Configuration) {
-        scene::stage(world, &configuration.staging);
+        staging::stage(world, &configuration.staging);
     }
 
     fn settings(configuration: &Configuration, seed: u32) -> FrameSettings {

@@ -13,14 +13,14 @@
 mod cube;
 mod field;
 mod figures;
-#[cfg(test)]
-mod files;
 mod page;
 mod plan;
 mod record;
 mod select;
 mod study;
 mod summary;
+#[cfg(test)]
+mod tests;
 
 use std::path::Path;
 

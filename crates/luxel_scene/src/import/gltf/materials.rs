@@ -14,6 +14,9 @@ use crate::textures::MaterialTextures;
 use super::extensions::Ignored;
 use super::textures::Images;
 
+/// Stands for an infinite index of refraction; no other is larger.
+const INFINITE_INDEX: f32 = 1e4;
+
 /// A material and its textures, if there are any.
 pub(super) type Look = (Material, Option<MaterialTextures>);
 
@@ -160,9 +163,7 @@ fn principled(from: &GltfMaterial, others: &Others) -> Principled {
         base_color: reflectance(Vec4::from_array(pbr.base_color_factor.0).truncate()),
         metallic: share(pbr.metallic_factor.0),
         roughness: share(pbr.roughness_factor.0),
-        ior: extensions
-            .and_then(|extensions| extensions.ior.as_ref())
-            .map_or(1.5, |ior| if ior.ior.0 >= 1.0 { ior.ior.0.min(10.0) } else { 1.5 }),
+        ior: extensions.and_then(|extensions| extensions.ior.as_ref()).map_or(1.5, |ior| index(ior.ior.0)),
         specular: specular.map_or(1.0, |specular| share(specular.specular_factor.0)),
         specular_color: specular
             .map_or(Vec3::ONE, |specular| reflectance(Vec3::from_array(specular.specular_color_factor.0))),
@@ -242,6 +243,16 @@ fn textures(
         specular_color: texture(specular.and_then(|it| it.specular_color_texture.as_ref())),
         clearcoat: texture(clearcoat.and_then(|it| it.clearcoat_texture.as_ref())),
         clearcoat_roughness: texture(clearcoat.and_then(|it| it.clearcoat_roughness_texture.as_ref())),
+    }
+}
+
+/// An index of refraction. 0 stands for an infinite one (`KHR_materials_ior`), which reflects everything; what is
+/// otherwise below 1 is glTF's default.
+fn index(value: f32) -> f32 {
+    match value {
+        0.0 => INFINITE_INDEX,
+        _ if value >= 1.0 => value.min(INFINITE_INDEX),
+        _ => 1.5,
     }
 }
 

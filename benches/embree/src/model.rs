@@ -1,4 +1,4 @@
-//! Meshes of the shared data, read as they stand: no welding, no repair. Also compiled into `benches/embree`.
+//! Meshes of the shared data, read as they stand: no welding, no repair.
 use std::path::Path;
 
 use glam::Vec3;
@@ -20,7 +20,6 @@ impl Model {
     }
 
     /// The model at another size.
-    #[allow(dead_code, reason = "one of the two programs only")]
     pub(crate) fn scaled(&self, factor: f32) -> Self {
         let positions = self.positions.iter().map(|&p| p * factor).collect();
         Self { name: format!("{} × {factor}", self.name), positions, indices: self.indices.clone() }
