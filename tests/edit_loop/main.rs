@@ -176,15 +176,12 @@ fn a_damaged_structure_is_found_out() {
     let meshes = scene.instances.as_slice().iter().filter(|i| i.kind == KIND_MESH && i.node_count > 1);
     let mesh = meshes.max_by_key(rays_at).unwrap();
     assert!(rays_at(&mesh) > 100, "{} rays", rays_at(&mesh));
-    let damages: [(&str, &dyn Fn(&mut FlatScene)); 2] = [
-        ("TLAS", &|scene| shrink(scene.tlas_nodes.get_mut(1, 0))),
-        ("mesh", &|scene| shrink(scene.bvh_nodes.get_mut(mesh.node_first as usize + 1, 0))),
-    ];
-    for (what, damage) in damages {
-        let mut damaged = FlatScene::clone(&scene);
-        damage(&mut damaged);
-        assert!(!oracle::differing(&trace(&damaged, &rays), &naive).is_empty(), "{what}");
-    }
+    let mut damaged = FlatScene::clone(&scene);
+    shrink(damaged.tlas_nodes.get_mut(1, 0));
+    assert!(!oracle::differing(&trace(&damaged, &rays), &naive).is_empty());
+    let mut damaged = FlatScene::clone(&scene);
+    shrink(damaged.bvh_nodes.get_mut(mesh.node_first as usize + 1, 0));
+    assert!(!oracle::differing(&trace(&damaged, &rays), &naive).is_empty());
     let mut damaged = FlatScene::clone(&scene);
     damaged.octree_nodes.get_mut(0, 0).child_mask = 0;
     assert!(!oracle::differing(&trace(&damaged, &rays), &naive).is_empty());

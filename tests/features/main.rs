@@ -66,7 +66,7 @@ fn a_scene_with_everything_does_the_work_of_every_row() {
         };
         check(&trace(&mut CpuTracer::new(), &request, 1).stats, "cpu");
         let Some(gpu) = &gpu else { continue };
-        let gpu = &on_gpu(gpu, &[request.clone()])[0];
+        let gpu = &on_gpu(gpu, std::slice::from_ref(&request))[0];
         check(&gpu.stats, "gpu");
         for label in request.features.rows().flat_map(kernels_of) {
             assert!(has_pass(&gpu.stats, label), "no pass {label} in a scene that needs it");

@@ -205,9 +205,10 @@ fn remove(feature: Feature, world: &mut World) {
         Feature::Spheres => despawn::<Sphere>(world),
         Feature::Triangles => despawn::<MeshInstance>(world),
         Feature::Voxels => despawn::<VoxelVolume>(world),
-        Feature::Lambert => resurface(world, |surface| match *surface {
-            Surface::Lambert { albedo } => *surface = Surface::Metal { albedo, fuzz: 0.5 },
-            _ => {}
+        Feature::Lambert => resurface(world, |surface| {
+            if let Surface::Lambert { albedo } = *surface {
+                *surface = Surface::Metal { albedo, fuzz: 0.5 };
+            }
         }),
         Feature::Metal => replace(world, |surface| matches!(surface, Surface::Metal { .. }), grey),
         Feature::Dielectric => replace(world, |surface| matches!(surface, Surface::Dielectric { .. }), grey),
