@@ -153,7 +153,7 @@ fn nodes_run_in_the_graphs_order_whatever_the_order_in_which_they_were_added() {
         (traced.film, passes, tracer.resolve(&Display::default()).unwrap())
     };
     let (film, passes, picture) = labels((0..NODES.len()).collect());
-    assert_eq!(passes, ["generate", "intersect", "first_hits", "shade", "accumulate"]);
+    assert_eq!(passes, ["generate", "intersect", "surface", "first_hits", "shade", "scatter", "accumulate"]);
     let mut order: Vec<usize> = (0..NODES.len()).collect();
     for seed in 0..4 {
         Random::new(seed).shuffle(&mut order);

@@ -207,7 +207,7 @@ fn in_volumes() {
     let row = Parts::volume(&row, edge.into());
     // The same volume six times, a little beside each other. All are hit at once, then the lowest id wins: that of the
     // one which the walk over the instances comes to last.
-    let beside = (0..6).rev().map(|i| DAffine3::from_translation(DVec3::Y * f64::from(i) * 0.05));
+    let beside = (0..6).map(|i| DAffine3::from_translation(DVec3::Y * f64::from(i) * 0.05));
     let scene = row.place(beside);
     assert_cuts_are_counted("volumes", |length| {
         let x = f32::from(edge - 2) * (1.0 - length as f32 / LENGTHS as f32);

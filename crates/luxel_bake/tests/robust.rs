@@ -205,7 +205,7 @@ fn a_baker_keeps_to_its_world() {
 }
 
 #[test]
-fn a_long_chain_is_walked_without_recursion() {
+fn i04_a_long_chain_is_walked_without_recursion() {
     let mut studio = Studio::empty();
     let step = Transform { rotation: DQuat::from_rotation_z(1e-4), ..Transform::at(DVec3::X * 1e-3) };
     let mut parent = spawn(&mut studio.world, step);
@@ -243,7 +243,7 @@ fn groups_need_no_transform() {
 }
 
 #[test]
-fn a_cyclic_hierarchy_is_an_error_and_can_be_undone() {
+fn i04_a_cyclic_hierarchy_is_an_error_and_can_be_undone() {
     let mut studio = Studio::empty();
     let scene = OneOfEach::new(&mut studio);
     studio.run();

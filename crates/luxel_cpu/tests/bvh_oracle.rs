@@ -1,4 +1,4 @@
-//! Meshes: accelerated equals naive over robustness.md T05, T06, T11, T12, T14 and B01–B05, B08, B11.
+//! Meshes: accelerated equals naive over robustness.md T05, T06, T10–T12, T14, T19 and B01–B05, B08, B11.
 #![allow(clippy::unwrap_used)]
 mod common;
 
@@ -217,7 +217,7 @@ fn random_soups_at_every_scale() {
         let all = rays::random(seed, 3000, 2.0);
         let scaled: Vec<_> = all.iter().map(|r| Ray::new(r.origin * scale, r.direction)).collect();
         assert!(assert_equals_naive(&scene, &scaled) > 500);
-        // S2: a power of two changes no bit but the exponent of t.
+        // T19, S2: a power of two changes no bit but the exponent of t.
         for (a, b) in all.iter().zip(&scaled) {
             let (mut hit, scaled) = (trace(&unit, a), trace(&scene, b));
             hit.iter_mut().for_each(|h| h.on.t *= scale);
@@ -227,7 +227,7 @@ fn random_soups_at_every_scale() {
 }
 
 #[test]
-fn invalid_rays_hit_nothing_at_once() {
+fn t10_invalid_rays_hit_nothing_at_once() {
     let scene = mesh_scene(&meshes::soup(3, 300, 0.4));
     let mut counters = Counters::default();
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {

@@ -13,7 +13,7 @@ use luxel_gpu::{
 };
 
 use crate::graph::{ActiveFeatures, Failure, NODES, schedule_in_order};
-use crate::kernels::Pipelines;
+use crate::kernels::{KERNELS, Pipelines};
 use crate::nodes::{Device, OpenFrame, Purpose, Work};
 use crate::{GpuFilm, GpuScene};
 
@@ -322,7 +322,7 @@ impl Tracer for GpuTracer {
 
     fn stats(&self) -> TraceStats {
         let Some(job) = &self.job else { return TraceStats::default() };
-        let order = |pass: &PassTime| NODES.iter().position(|n| n.kernels.contains(&pass.label.as_str()));
+        let order = |pass: &PassTime| KERNELS.iter().position(|row| row.kernel.entry == pass.label);
         let mut passes: Vec<PassTime> = job.passes.values().cloned().collect();
         passes.sort_by_key(order);
         TraceStats { counters: job.counters.clone(), passes, compile_secs: job.compile_secs }

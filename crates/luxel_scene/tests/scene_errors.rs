@@ -154,6 +154,7 @@ const ENTITY_MISTAKES: &[(&str, &str, &str)] = &[
     ("textures.clearcoat.rotation", "textures: (clearcoat: (image: 1, rotation: NaN))", "finite"),
     ("textures.color.image", "textures: (color: (image: 7))", "names image 7, which does not exist"),
     ("parent", "parent: 9", "names entity 9, which does not exist"),
+    // I04: an entity within itself.
     ("parent", "parent: 3", "leads back to the entity itself"),
     ("mesh", "mesh: 2", "names mesh 2, which does not exist"),
     ("voxels", "voxels: 1", "names volume 1, which does not exist"),
