@@ -15,7 +15,7 @@ use std::time::Duration;
 use cpu_time::ProcessTime;
 use luxel_engine::Engine;
 use luxel_film::tracer::{TraceRequest, Tracer};
-use luxel_flat::{FeatureSet, FlatScene};
+use luxel_flat::{Feature, FeatureSet, FlatScene};
 use luxel_gpu::{Gpu, GpuRequest, SlicePolicy, SoftwarePolicy};
 use luxel_render::GpuTracer;
 use luxel_scene::RenderSettings;
@@ -25,6 +25,8 @@ use serde_json::{Value, json};
 const NO_CACHE: &str = "MESA_SHADER_CACHE_DISABLE";
 /// The scene that is traced with all features.
 const RICHEST: &str = "one_of_each";
+/// What textures and holes add to its own features.
+const DRESSED: [Feature; 4] = [Feature::Attributes, Feature::Textures, Feature::NormalMaps, Feature::Alpha];
 
 fn main() -> ExitCode {
     if std::env::var_os(NO_CACHE).is_none() {
@@ -47,8 +49,10 @@ fn measure(gpu: &Gpu) {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let scene = tiny_picture_of(&path);
         if name == RICHEST {
-            let everything = TraceRequest { scene: Arc::clone(&scene), features: FeatureSet::ALL };
-            costs.push(compile(gpu, "all features", everything));
+            let dressed = DRESSED.into_iter().fold(scene.features, |set, feature| set.with(feature, true));
+            for (name, features) in [("all features", FeatureSet::ALL), ("textures and holes", dressed)] {
+                costs.push(compile(gpu, name, TraceRequest { scene: Arc::clone(&scene), features }));
+            }
         }
         costs.push(compile(gpu, &name, TraceRequest::new(scene)));
     }

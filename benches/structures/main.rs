@@ -5,6 +5,7 @@
 //! run on one thread, builds on all.
 #![allow(clippy::unwrap_used)]
 mod bvh_crate;
+mod deforming;
 mod inputs;
 mod instances;
 mod luxel;
@@ -34,6 +35,7 @@ fn main() {
         .configure_from_args();
     for model in inputs::models() {
         bench_mesh(&mut criterion, &model);
+        deforming::bench(&mut criterion, &model);
     }
     bench_spheres(&mut criterion, &inputs::sphere_cloud());
     moving::bench(&mut criterion, &inputs::sphere_cloud());

@@ -4,6 +4,8 @@
 #[path = "../support/asset.rs"]
 mod asset;
 mod counters;
+#[path = "../support/dressed.rs"]
+mod dressed;
 mod first_hits;
 mod materials;
 mod slices;

@@ -1,7 +1,7 @@
 //! The backends agree on every material, texture, vertex attribute, hole and see-through surface, through a lens and by
 //! parallel rays: in what the camera sees, and in the mean of every tile.
 use bevy_ecs::prelude::*;
-use glam::{DQuat, DVec3, Vec2, Vec3, Vec4};
+use glam::{DQuat, DVec3, Vec3};
 use luxel_cpu::CpuTracer;
 use luxel_engine::Engine;
 use luxel_film::tracer::TraceRequest;
@@ -9,17 +9,18 @@ use luxel_flat::{Feature, FeatureSet};
 use luxel_gpu::{SlicePolicy, testing::gpu_or_fail};
 use luxel_render::GpuTracer;
 use luxel_scene::{
-    AssetId, Assets, Camera, Environment, Filter, ImageAsset, ImagePixels, ImageSource, Material,
-    MaterialTextures, MeshAsset, MeshInstance, MeshSource, Opacity, PointLight, Principled, Projection,
-    RenderSettings, SmoothNormals, Sphere, Surface, TextureRef, Transform, Volume, Wrap,
+    Assets, Camera, Environment, Material, MeshAsset, MeshInstance, MeshSource, Opacity, PointLight,
+    Principled, Projection, RenderSettings, SmoothNormals, Sphere, Surface, Transform, Volume,
 };
-use luxel_testkit::Random;
 
+use crate::dressed::{ball, textures};
 use crate::traced::trace;
 use crate::welch::{Batch, batches, mean_and_variance, worst_ratio};
 
-/// A multiple of a tile's edge.
-const SIZE: [u32; 2] = [96, 64];
+/// Of pictures whose tiles are compared: multiples of a tile's edge.
+const SIZE: [u32; 2] = [64, 48];
+/// Of pictures whose first hits are compared.
+const SEEN_SIZE: [u32; 2] = [96, 64];
 /// Samples of a batch.
 const SAMPLES: u32 = 4;
 /// Share of pixels whose ids must be equal at one sample.
@@ -101,54 +102,6 @@ fn every_material() -> World {
         luxel_scene::spawn(&mut world, (MeshInstance { mesh }, place, material, smooth));
     }
     world
-}
-
-/// A picture of noise.
-fn noise(world: &mut World, seed: u32, [width, height]: [u32; 2]) -> TextureRef {
-    let mut random = Random::new(seed);
-    let texels = (0..width * height).map(|_| random.word().to_le_bytes()).collect();
-    TextureRef::new(image(world, [width, height], texels))
-}
-
-fn image(world: &mut World, [width, height]: [u32; 2], texels: Vec<[u8; 4]>) -> AssetId {
-    let source = ImageSource::Checker { squares: 1, a: [0; 3], b: [0; 3] };
-    let asset = ImageAsset { source, width, height, pixels: ImagePixels::Rgba8(texels) };
-    world.resource_mut::<Assets>().insert_image(asset)
-}
-
-/// Texels that are normals.
-fn bumps(world: &mut World) -> TextureRef {
-    let mut random = Random::new(9);
-    let mut texel = || [108 + random.below(40) as u8, 108 + random.below(40) as u8, 240, 255];
-    let texels = (0..64).map(|_| texel()).collect();
-    TextureRef { normal_scale: 0.8, ..TextureRef::new(image(world, [8, 8], texels)) }
-}
-
-/// Textures in every role, with every way to wrap and filter.
-fn textures(world: &mut World) -> MaterialTextures {
-    let [color, rough, coat, emission] = [1, 2, 3, 4].map(|seed| noise(world, seed, [7, 5]));
-    let normal = bumps(world);
-    MaterialTextures {
-        color: Some(TextureRef { rotation: 0.3, scale: Vec2::new(1.5, 2.0), wrap_u: Wrap::Mirror, ..color }),
-        metallic_roughness: Some(TextureRef { uv_set: 1, filter: Filter::Nearest, ..rough }),
-        normal: Some(normal),
-        emission: Some(TextureRef { wrap_u: Wrap::Clamp, wrap_v: Wrap::Mirror, ..emission }),
-        transmission: Some(TextureRef { offset: Vec2::new(0.3, 0.1), ..coat }),
-        specular: Some(rough),
-        specular_color: Some(TextureRef { wrap_v: Wrap::Clamp, ..color }),
-        clearcoat: Some(coat),
-        clearcoat_roughness: Some(TextureRef { uv_set: 1, ..coat }),
-    }
-}
-
-/// A ball with both sets of texture coordinates, vertex colours and normals.
-fn ball() -> MeshAsset {
-    let mut mesh = MeshAsset::from_source(MeshSource::Icosphere { subdivisions: 2 }).unwrap();
-    let positions = mesh.mesh.positions.clone();
-    mesh.mesh.uvs[0] = positions.iter().map(|p| Vec2::new(p.x + 0.3 * p.z, p.y) * 1.7).collect();
-    mesh.mesh.uvs[1] = positions.iter().map(|p| Vec2::new(p.z, p.x - p.y)).collect();
-    mesh.mesh.colors = positions.iter().map(|p| Vec4::new(0.9, 0.5 + 0.4 * p.y, 1.0, 0.9)).collect();
-    mesh
 }
 
 /// Textures in every role, holes and see-through surfaces, on mirrored and sheared balls, seen by parallel rays.
@@ -242,7 +195,13 @@ fn compare(name: &str, world: World, wanted: &[Feature]) {
 }
 
 fn compare_first_hits(name: &str, engine: &mut Engine, tracer: &mut GpuTracer, wanted: &[Feature]) {
-    let request = TraceRequest::new(engine.bake().unwrap()).with_aovs(true);
+    let mut resize = |[width, height]: [u32; 2]| {
+        let mut settings = engine.world.resource_mut::<RenderSettings>();
+        (settings.width, settings.height) = (width, height);
+        engine.bake().unwrap()
+    };
+    let request = TraceRequest::new(resize(SEEN_SIZE)).with_aovs(true);
+    resize(SIZE);
     assert!(has(request.features, wanted), "{name}: {:?} is not all of {wanted:?}", request.features);
     let seen = |film: luxel_film::Film| -> Vec<[u32; 2]> {
         film.aovs.unwrap().iter().map(|aov| [aov.instance, aov.primitive]).collect()

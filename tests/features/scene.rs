@@ -56,6 +56,8 @@ fn implied(feature: Feature) -> &'static [Feature] {
         Feature::Textures => &[Feature::NormalMaps],
         Feature::Principled => &[Feature::Transmission, Feature::Clearcoat, Feature::Absorption],
         Feature::Transmission => &[Feature::Absorption],
+        // Glass of both kinds makes two bodies.
+        Feature::NestedMedia => &[Feature::Dielectric],
         Feature::Emission => &[Feature::AreaLights],
         Feature::LightTree => &[Feature::PunctualLights],
         Feature::Lights => &[
@@ -159,6 +161,9 @@ fn spawn_objects(world: &mut World) {
         let corner = at(-1.0) - DVec3::splat(0.4);
         luxel_scene::spawn(world, (VoxelVolume { volume }, scaled(corner, 0.16), material));
     }
+    // In the sphere of the third material.
+    let in_glass = Transform::at(DVec3::new(-0.6, 1.4, 0.0));
+    luxel_scene::spawn(world, (Sphere { radius: 0.3 }, in_glass, materials()[3]));
     spawn_textured(world, plain);
 }
 
@@ -219,6 +224,7 @@ fn remove(feature: Feature, world: &mut World) {
         Feature::Transmission => principled(world, |principled| principled.transmission = 0.0),
         Feature::Clearcoat => principled(world, |principled| principled.clearcoat = 0.0),
         Feature::Absorption => principled(world, |principled| principled.volume = Some(Volume::default())),
+        Feature::NestedMedia => leave_one_clear_body(world, grey),
         Feature::Emission => repaint(world, |material| material.emission = Vec3::ZERO),
         Feature::Alpha => repaint(world, |material| material.opacity = Opacity::Opaque),
         Feature::Attributes | Feature::Textures | Feature::NormalMaps => untexture(feature, world),
@@ -236,6 +242,17 @@ fn remove(feature: Feature, world: &mut World) {
         | Feature::LightTree => unlight(feature, world),
         // Asked for by a request, not by a scene.
         Feature::Aovs => {}
+    }
+}
+
+/// Leaves one mesh clear.
+fn leave_one_clear_body(world: &mut World, grey: Surface) {
+    replace(world, |surface| matches!(surface, Surface::Dielectric { .. }), grey);
+    let mut others = world.query_filtered::<&mut Material, Without<MeshInstance>>();
+    for mut material in others.iter_mut(world) {
+        if let Surface::Principled(principled) = &mut material.surface {
+            principled.transmission = 0.0;
+        }
     }
 }
 

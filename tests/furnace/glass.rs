@@ -59,6 +59,19 @@ fn glass_seen_from_inside_is_invisible_too() {
     assert!(off < ROUNDING, "off by {off:e}");
 }
 
+/// L04: in a cube light is caught between walls that it meets beyond the critical angle, 41.8103 degrees, and so seldom
+/// gets out that many paths end before; nothing that is no number comes of it, and no light is made.
+#[test]
+fn l04_a_cube_catches_light() {
+    let mut cube = white_furnace(Walls::Mesh, 1.5);
+    cube.look_from(DVec3::new(0.1, 0.2, -0.15));
+    cube.set(|settings| settings.max_depth = 128);
+    let values = cube.trace(64);
+    let most = 1.5f64.powi(2) * (1.0 + ROUNDING);
+    assert!(values.iter().all(|v| (0.0..=most).contains(&f64::from(*v))));
+    assert!(values.iter().any(|v| f64::from(*v) > 0.99 * most) && values.iter().any(|v| f64::from(*v) < 1.0));
+}
+
 #[test]
 fn a_perfect_mirror_is_invisible() {
     for kind in EVERY_KIND {

@@ -21,7 +21,7 @@ const fn bound(function: &'static str, forward: f32, backward: f32, because: &'s
 }
 
 /// In the order of the cases.
-pub(crate) const BOUNDS: [Bound; 36] = [
+pub(crate) const BOUNDS: [Bound; 45] = [
     bound("box_interval", 16.0, 4.0, "difference 2u, reciprocal 5u, product 2u, pad 2u; Rust 4u"),
     bound(
         "intersect_sphere",
@@ -138,4 +138,33 @@ pub(crate) const BOUNDS: [Bound; 36] = [
         64.0,
         "a dozen of the above in turn; tables at places that are wrong by 30u",
     ),
+    bound(
+        "sample_bsdf",
+        16384.0,
+        64.0,
+        "WGSL's sin and cos: absolute 2^-11, twice; weights as evaluate_bsdf, at grazing angles as the cosine",
+    ),
+    bound("sample_texture", 256.0, 4.0, "as srgb_decode; the scale is larger where a step between texels is"),
+    bound("vertex_attributes", 32.0, 0.0, "three unpacked numbers (3u), products and sums; decode_direction"),
+    bound(
+        "surface_at",
+        256.0,
+        16.0,
+        "as sample_texture; a bent normal as valid_shading_normal, of a map that decodes to 4u",
+    ),
+    bound("passes_alpha", 1.0, 16.0, "integers; a surface that lets rays pass with a chance wrong by 16u"),
+    bound(
+        "sample_light_tree",
+        8192.0,
+        16.0,
+        "cosines of 30u against the least that counts, 1/256; a level each",
+    ),
+    bound(
+        "sample_light",
+        16384.0,
+        16.0,
+        "WGSL's sin and cos: absolute 2^-11, on cones and half chords; as sample_light_tree",
+    ),
+    bound("light_pdf", 8192.0, 16.0, "as sample_light_tree, triangle_pdf, sphere_opening"),
+    bound("sky_light", 8192.0, 16.0, "WGSL's atan2: 4096 ulp, in steps between texels"),
 ];

@@ -1,5 +1,6 @@
 //! The functions that have twins: how each is called in WESL and in Rust, and on what. Geometry is here, reflection in
-//! `reflectance.rs`, sampling and maps in `sampling.rs`, what shading starts from in `surfaces.rs`.
+//! `reflectance.rs`, sampling and maps in `sampling.rs`, what shading starts from in `surfaces.rs`, textures and what else surfaces carry in `dressing.rs`,
+//! lights in `lighting.rs`.
 use glam::Vec3;
 use luxel_film::{ToneMap, tonemap};
 use luxel_flat::{PATH_ENTERING, PATH_LEAVING};
@@ -8,12 +9,18 @@ use luxel_geom::{
 };
 use luxel_gpu::Gpu;
 use luxel_testkit::Random;
+use rayon::prelude::*;
 
 use crate::bounds::{BOUNDS, Bound};
-use crate::device;
+use crate::device::Function;
 use crate::inputs::{input, number, point, ray, size, unit};
 use crate::judge::{Call, Expected, Input, Output};
-use crate::{reflectance, sampling, surfaces};
+use crate::{dressing, lighting, reflectance, sampling, surfaces};
+
+/// Calls that are made together: little enough memory to be used again for the next.
+pub(crate) const BATCH: usize = 1 << 16;
+/// Parts of a batch whose inputs are made side by side.
+const PARTS: u32 = 16;
 
 /// A function and its twin.
 pub(crate) struct Case {
@@ -31,10 +38,8 @@ impl Case {
         BOUNDS.iter().find(|bound| bound.function == self.function).unwrap()
     }
 
-    /// Calls the function on the device.
-    pub(crate) fn calls(&self, gpu: &Gpu, count: usize) -> Vec<Call> {
-        let mut random = Random::new(self.function.len() as u32);
-        let inputs: Vec<Input> = (0..count).map(|_| (self.make)(&mut random)).collect();
+    /// The function on the device.
+    pub(crate) fn function<'a>(&self, gpu: &'a Gpu) -> Function<'a> {
         let module = format!(
             "{}
 struct Input {{ a: vec4f, b: vec4f, c: vec4f, d: vec4f, code: vec4u }}
@@ -43,14 +48,25 @@ fn give(values: vec4f, key: u32) -> Output {{ return Output(values, vec4u(key, 0
 fn call(in: Input) -> Output {{ {} }}",
             self.imports, self.body
         );
-        let found: Vec<Output> = device::map(gpu, &module, &inputs);
+        Function::new(gpu, &module)
+    }
+
+    /// Calls the function on a batch of inputs, others for each batch.
+    pub(crate) fn calls(&self, function: &Function, batch: u32) -> Vec<Call> {
+        let part = |part: u32| {
+            let mut random = Random::new(self.function.len() as u32 + (batch * PARTS + part) * 1000);
+            (0..BATCH / PARTS as usize).map(move |_| (self.make)(&mut random)).collect::<Vec<Input>>()
+        };
+        let inputs: Vec<Input> = (0..PARTS).into_par_iter().map(part).collect::<Vec<_>>().concat();
+        let found: Vec<Output> = function.map(&inputs);
         inputs.into_iter().zip(found).map(|(input, found)| Call { input, found }).collect()
     }
 }
 
 /// Every case, of this file and of the others.
 pub(crate) fn all() -> impl Iterator<Item = &'static Case> {
-    CASES.iter().chain(&reflectance::CASES).chain(&sampling::CASES).chain(&surfaces::CASES)
+    let of_tracers = surfaces::CASES.iter().chain(&dressing::CASES).chain(&lighting::CASES);
+    CASES.iter().chain(&reflectance::CASES).chain(&sampling::CASES).chain(of_tracers)
 }
 
 pub(crate) fn xyz(v: [f32; 4]) -> Vec3 {

@@ -3,7 +3,7 @@ use luxel_geom::rng;
 use luxel_gpu::testing::gpu_or_fail;
 use luxel_testkit::Random;
 
-use crate::device;
+use crate::device::Function;
 
 const ADDRESSES: usize = 1_000_000;
 
@@ -27,7 +27,7 @@ fn random_numbers_are_equal_bit_for_bit() {
     };
     let addresses: Vec<[u32; 4]> =
         (0..ADDRESSES).map(|i| [word(i), word(i / 4), word(i / 16), word(i / 64)]).collect();
-    let found: Vec<[[u32; 4]; 3]> = device::map(&gpu, MODULE, &addresses);
+    let found: Vec<[[u32; 4]; 3]> = Function::new(&gpu, MODULE).map(&addresses);
     let twin = |address: &[u32; 4]| {
         let [pixel, sample, block, seed] = *address;
         let uniforms = rng::uniform4::<f32>(pixel, sample, block, seed).map(f32::to_bits);

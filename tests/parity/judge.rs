@@ -2,12 +2,15 @@
 use std::fmt;
 
 use luxel_testkit::Random;
+use rayon::prelude::*;
 
 use crate::bounds::Bound;
 use crate::cases::Case;
 
 /// Unit round-off.
 pub(crate) const U: f32 = f32::EPSILON * 0.5;
+/// Calls that one thread judges in a row.
+const CHUNK: usize = 1 << 12;
 /// Inputs that are tried to explain a difference.
 const JITTERS: usize = 96;
 
@@ -79,22 +82,38 @@ pub(crate) struct Tally {
 
 impl Tally {
     pub(crate) fn of(case: &Case, calls: &[Call]) -> Self {
-        let mut tally = Self { calls: calls.len(), ..Self::default() };
+        calls
+            .par_chunks(CHUNK)
+            .map(|chunk| chunk.iter().fold(Self::default(), |tally, call| tally.with(case, call)))
+            .reduce(Self::default, Self::and)
+    }
+
+    fn with(mut self, case: &Case, call: &Call) -> Self {
         let bound = case.bound();
-        for call in calls {
-            let expected = (case.twin)(&call.input);
-            let error = error(&call.found, &expected);
-            tally.hits += usize::from(expected.key != 0);
-            tally.equal += usize::from(error == 0.0);
-            if error <= bound.forward {
-                tally.worst = tally.worst.max(error);
-            } else if is_explained(case, bound, call) {
-                tally.explained += 1;
-            } else {
-                tally.wrong = tally.wrong.or(Some((*call, expected)));
-            }
+        let expected = (case.twin)(&call.input);
+        let error = error(&call.found, &expected);
+        self.calls += 1;
+        self.hits += usize::from(expected.key != 0);
+        self.equal += usize::from(error == 0.0);
+        if error <= bound.forward {
+            self.worst = self.worst.max(error);
+        } else if is_explained(case, bound, call) {
+            self.explained += 1;
+        } else {
+            self.wrong = self.wrong.or(Some((*call, expected)));
         }
-        tally
+        self
+    }
+
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            hits: self.hits + other.hits,
+            equal: self.equal + other.equal,
+            explained: self.explained + other.explained,
+            worst: self.worst.max(other.worst),
+            calls: self.calls + other.calls,
+            wrong: self.wrong.or(other.wrong),
+        }
     }
 }
 

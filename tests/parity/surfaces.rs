@@ -1,7 +1,10 @@
 //! Cases of what shading starts from: points and normals of triangles, and the principled model as a whole.
 use glam::Vec3;
 use luxel_cpu::bsdf::{self, Bsdf, Geometry};
-use luxel_flat::{MATERIAL_PRINCIPLED, MATERIAL_THIN, MaterialRecord};
+use luxel_flat::{
+    Counters, MATERIAL_DIELECTRIC, MATERIAL_LAMBERT, MATERIAL_METAL, MATERIAL_PRINCIPLED, MATERIAL_SCHLICK,
+    MATERIAL_SEMI_SPECULAR, MATERIAL_THIN, MaterialRecord,
+};
 use luxel_geom::albedo::TABLES;
 use luxel_geom::{triangle, warp};
 use luxel_testkit::Random;
@@ -27,8 +30,8 @@ fn vertices(i: &Input) -> [Vec3; 3] {
 fn material(i: &Input) -> MaterialRecord {
     let share = |k: usize| (i.code[3] >> (8 * k) & 0xff) as f32 / 255.0;
     MaterialRecord {
-        kind: MATERIAL_PRINCIPLED,
-        flags: i.code[0],
+        kind: i.code[0] >> 16,
+        flags: i.code[0] & 0xffff,
         color: xyz(i.c).to_array(),
         roughness: i.a[3],
         metallic: i.b[3],
@@ -37,12 +40,80 @@ fn material(i: &Input) -> MaterialRecord {
         specular: share(0),
         specular_color: [1.0, 0.8, 0.6],
         clearcoat: share(1),
-        clearcoat_roughness: 0.3 + 0.7 * share(2),
+        clearcoat_roughness: if share(2) < 0.1 { 0.0 } else { 0.3 + 0.7 * share(2) },
         ..MaterialRecord::default()
     }
 }
 
-pub(crate) static CASES: [Case; 4] = [
+/// How the material is seen: the geometric normal is +Z, the shading normal in `d`.
+fn geometry(i: &Input) -> Geometry<f32> {
+    let normal = Vec3::new(i.d[1], i.d[2], i.d[3]);
+    Geometry { wo: xyz(i.a), normal, geometric: Vec3::Z, front: i.code[1] == 1 }
+}
+
+/// The twins of [`material`] and [`geometry`].
+const SCATTERING: &str = "import package::bsdf::sample::{Geometry, evaluate_bsdf, sample_bsdf};
+    import package::generated::shared::SurfacePoint;
+    fn share(word: u32, k: u32) -> f32 { return f32((word >> (8u * k)) & 0xffu) / 255.0; }
+    fn material(in: Input) -> SurfacePoint {
+        var s: SurfacePoint;
+        s.kind = in.code.x >> 16u;
+        s.flags = in.code.x & 0xffffu;
+        s.color = in.c.xyz;
+        s.roughness = in.a.w;
+        s.metallic = in.b.w;
+        s.transmission = in.c.w;
+        s.ior = in.d.x;
+        s.specular = share(in.code.w, 0u);
+        s.specular_color = vec3f(1.0, 0.8, 0.6);
+        s.clearcoat = share(in.code.w, 1u);
+        let coat = share(in.code.w, 2u);
+        s.clearcoat_roughness = select(0.3 + 0.7 * coat, 0.0, coat < 0.1);
+        return s;
+    }
+    fn geometry(in: Input) -> Geometry {
+        return Geometry(in.a.xyz, in.d.yzw, vec3f(0.0, 0.0, 1.0), in.code.y == 1u);
+    }";
+
+/// A direction that is not grazing.
+fn steep(r: &mut Random) -> Vec3 {
+    let v = unit(r);
+    Vec3::new(v.x, v.y, v.z.signum() * v.z.abs().max(0.02)).normalize()
+}
+
+/// A principled material seen from above, and another direction.
+fn principled_place(r: &mut Random) -> Input {
+    let (wo, wi) = (steep(r), steep(r));
+    let wo = Vec3::new(wo.x, wo.y, wo.z.abs());
+    // All or nothing, or well between: the smaller of two shares is one minus the larger.
+    let mut ends = || [0.0, 1.0, r.between(0.1, 0.9)][r.below(3) as usize];
+    let (metal, clear) = (ends(), ends());
+    let color = Vec3::new(r.between(0.2, 1.0), r.between(0.2, 1.0), r.between(0.2, 1.0));
+    let vectors = input([
+        (wo, r.between(0.3, 1.0)),
+        (wi, metal),
+        (color, clear),
+        (Vec3::new(r.between(1.3, 2.4), 0.0, 0.0), 1.0),
+    ]);
+    let thin = if r.below(4) == 0 { MATERIAL_THIN } else { 0 };
+    Input { code: [thin | MATERIAL_PRINCIPLED << 16, r.below(2), 0, r.word()], ..vectors }
+}
+
+/// A material, most often principled, with a shading normal of its own, and three numbers; smooth ones among them.
+fn scattering_place(r: &mut Random) -> Input {
+    let Input { mut a, mut b, d, code, .. } = principled_place(r);
+    let kinds = [MATERIAL_LAMBERT, MATERIAL_METAL, MATERIAL_DIELECTRIC, MATERIAL_SEMI_SPECULAR];
+    let kind = [MATERIAL_PRINCIPLED; 12].into_iter().chain(kinds).nth(r.below(16) as usize).unwrap();
+    let flags = if r.below(2) == 0 { MATERIAL_SCHLICK } else { 0 };
+    a[3] *= f32::from(u8::from(r.below(4) > 0));
+    b[..3].copy_from_slice(&[r.uniform(), r.uniform(), r.uniform()]);
+    let normal = (Vec3::Z + unit(r) * r.between(0.0, 0.7)).normalize();
+    let words = [code[0] & 0xffff | flags | kind << 16, code[1], r.below(2), code[3]];
+    let given = principled_place(r);
+    Input { a, b, c: given.c, d: [d[0], normal.x, normal.y, normal.z], code: words }
+}
+
+pub(crate) static CASES: [Case; 5] = [
     Case {
         function: "area_normal",
         imports: "import package::geom::triangle::area_normal;",
@@ -83,50 +154,37 @@ pub(crate) static CASES: [Case; 4] = [
     },
     Case {
         function: "evaluate_bsdf",
-        imports: "import package::bsdf::sample::{Geometry, evaluate_bsdf};
-            import package::generated::shared::{MATERIAL_PRINCIPLED, SurfacePoint};
-            fn share(word: u32, k: u32) -> f32 { return f32((word >> (8u * k)) & 0xffu) / 255.0; }",
-        body: "var s: SurfacePoint;
-            s.kind = MATERIAL_PRINCIPLED;
-            s.flags = in.code.x;
-            s.color = in.c.xyz;
-            s.roughness = in.a.w;
-            s.metallic = in.b.w;
-            s.transmission = in.c.w;
-            s.ior = in.d.x;
-            s.specular = share(in.code.w, 0u);
-            s.specular_color = vec3f(1.0, 0.8, 0.6);
-            s.clearcoat = share(in.code.w, 1u);
-            s.clearcoat_roughness = 0.3 + 0.7 * share(in.code.w, 2u);
-            let up = vec3f(0.0, 0.0, 1.0);
-            let value = evaluate_bsdf(s, Geometry(in.a.xyz, up, up, in.code.y == 1u), in.b.xyz);
+        imports: SCATTERING,
+        body: "let value = evaluate_bsdf(material(in), geometry(in), in.b.xyz);
             return give(vec4f(value.f_cos, value.pdf), 1u);",
         twin: |i| {
-            let up = Vec3::Z;
-            let geometry = Geometry { wo: xyz(i.a), normal: up, geometric: up, front: i.code[1] == 1 };
-            let value = bsdf::evaluate(&Bsdf::<f32>::of(&material(i)), &geometry, xyz(i.b), &TABLES);
+            let value = bsdf::evaluate(&Bsdf::<f32>::of(&material(i)), &geometry(i), xyz(i.b), &TABLES);
             let scale = value.f_cos.max_element() + value.pdf;
             Expected::scaled(1, value.f_cos.extend(value.pdf).to_array(), scale)
         },
-        make: |r| {
-            let mut direction = |least: f32| {
-                let v = unit(r);
-                Vec3::new(v.x, v.y, v.z.signum() * v.z.abs().max(least)).normalize()
-            };
-            let (wo, wi) = (direction(0.02), direction(0.02));
-            let wo = Vec3::new(wo.x, wo.y, wo.z.abs());
-            // All or nothing, or well between: the smaller of two shares is one minus the larger.
-            let mut ends = || [0.0, 1.0, r.between(0.1, 0.9)][r.below(3) as usize];
-            let (metal, clear) = (ends(), ends());
-            let color = Vec3::new(r.between(0.2, 1.0), r.between(0.2, 1.0), r.between(0.2, 1.0));
-            let vectors = input([
-                (wo, r.between(0.3, 1.0)),
-                (wi, metal),
-                (color, clear),
-                (Vec3::new(r.between(1.3, 2.4), 0.0, 0.0), 0.0),
-            ]);
-            let thin = if r.below(4) == 0 { MATERIAL_THIN } else { 0 };
-            Input { code: [thin, r.below(2), 0, r.word()], ..vectors }
+        make: principled_place,
+    },
+    Case {
+        function: "sample_bsdf",
+        imports: SCATTERING,
+        body: "let s = sample_bsdf(material(in), geometry(in), in.b.xyz);
+            let key = 1u + u32(s.pdf == 0.0) + 2u * u32(s.wi.z < 0.0);
+            return give(select(vec4f(s.weight, s.eta_scale), vec4f(s.wi, s.pdf), in.code.z == 0u),
+                select(key, 0u, s.eta_scale == 0.0));",
+        twin: |i| {
+            let [u0, u1, u2, _] = i.b;
+            let bsdf = Bsdf::<f32>::of(&material(i));
+            let sampled = bsdf::sample(&bsdf, &geometry(i), [u0, u1, u2], &TABLES, &mut Counters::default());
+            let Some(s) = sampled else { return Expected::MISS };
+            let key = 1 + u32::from(s.pdf == 0.0) + 2 * u32::from(s.wi.z < 0.0);
+            if i.code[2] == 0 {
+                let values = s.wi.extend(s.pdf).to_array();
+                return Expected { key, values, scale: [1.0, 1.0, 1.0, s.pdf] };
+            }
+            let weight = s.weight.max_element();
+            let values = s.weight.extend(s.eta_scale).to_array();
+            Expected { key, values, scale: [weight, weight, weight, s.eta_scale] }
         },
+        make: scattering_place,
     },
 ];

@@ -1,122 +1,27 @@
-//! Scenes of other projects whose radiance is known in closed form (`shared/data/reference-renders/REFERENCES.json`):
-//! Nori's polygonal lights and furnace, and the analytic scenes of pbrt's integrator tests.
+//! What other projects publish of scenes that Luxel can trace too (`shared/data/reference-renders/REFERENCES.json`):
+//! radiances in closed form (`known`), and pictures that Mitsuba 3 converged to (`pictures`).
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 use std::path::{Path, PathBuf};
 
-use bevy_ecs::prelude::*;
-use glam::{DVec3, Vec3};
-use luxel_cpu::CpuTracer;
-use luxel_engine::Engine;
-use luxel_film::tracer::{TraceRequest, Tracer};
-use luxel_scene::{
-    ActiveCamera, Assets, Camera, Environment, LightSampling, Material, MeshAsset, MeshInstance, MeshSource,
-    PointLight, RenderSettings, Sphere, Transform,
-};
+mod grid;
+mod judge;
+mod known;
+mod mitsuba;
+mod pictures;
+mod reference;
+mod single;
+mod stage;
+mod view;
+#[path = "../support/welch.rs"]
+mod welch;
 
-/// Largest |z| of a mean.
-const MAX_Z: f64 = 5.0;
-/// Largest relative distance of a mean.
-const TOLERANCE: f64 = 2e-3;
-
-/// A file of the reference scenes; where it is missing the test is left out, except under CI.
+/// A file of `shared/data`; where it is missing the test is left out, except under CI.
 fn shared(file: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/reference-renders/nori").join(file);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(file);
     if path.is_file() {
         return Some(path);
     }
     assert!(std::env::var_os("CI").is_none(), "{} is missing", path.display());
     println!("SKIPPED(1): {} is missing", path.display());
     None
-}
-
-/// A world in the dark with a camera; light may scatter `max_depth` times.
-fn world(eye: DVec3, at: DVec3, max_depth: u32) -> World {
-    let mut world = luxel_scene::empty_world();
-    world.insert_resource(Environment::Constant(Vec3::ZERO));
-    let settings = RenderSettings {
-        width: 32,
-        height: 32,
-        max_depth,
-        roulette_depth: 1000,
-        ..RenderSettings::default()
-    };
-    world.insert_resource(settings);
-    let camera = (Camera::pinhole(0.01), ActiveCamera, Transform::looking_at(eye, at));
-    luxel_scene::spawn(&mut world, camera);
-    world
-}
-
-fn add_mesh(world: &mut World, file: PathBuf, material: Material) {
-    let mesh = MeshAsset::from_source(MeshSource::File(file)).unwrap();
-    let mesh = world.resource_mut::<Assets>().insert_mesh(mesh);
-    luxel_scene::spawn(world, (MeshInstance { mesh }, Transform::default(), material));
-}
-
-/// Holds the mean of the picture against what is published, with each way to find lights.
-fn check(name: &str, world: World, expected: f64, samples: u32, ways: &[LightSampling]) {
-    let mut engine = Engine::over(world, Path::new("(reference)")).unwrap();
-    for way in ways {
-        engine.world.resource_mut::<RenderSettings>().light_sampling = *way;
-        let mut tracer = CpuTracer::new();
-        tracer.set_scene(TraceRequest::new(engine.bake().unwrap())).unwrap();
-        while tracer.advance(60.0, samples).unwrap().samples < samples {}
-        let values: Vec<f64> =
-            tracer.film().unwrap().beauty().into_iter().map(|color| f64::from(color[0])).collect();
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let error = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt();
-        println!("{name}, {way:?}: {mean:.6} ± {error:.6} for {expected:.6}");
-        let off = (mean - expected).abs();
-        // What repeats exactly in every path has no noise, but rounding.
-        assert!(
-            off <= (MAX_Z * error).max(1e-5 * expected),
-            "{name}, {way:?}: {mean} ± {error}, not {expected}"
-        );
-        assert!(off <= 5.0 * TOLERANCE * expected, "{name}, {way:?}: {mean}, not {expected}");
-    }
-}
-
-#[test]
-fn noris_polygonal_lights() {
-    let published =
-        [("polylum1.obj", 0.089_839_4), ("polylum2.obj", 0.022_92), ("polylum3.obj", 0.053_419_8)];
-    for (file, expected) in published {
-        let (Some(light), Some(floor)) = (shared(file), shared("floor.obj")) else { return };
-        let mut world = world(DVec3::Y * 0.01, DVec3::ZERO, 1);
-        add_mesh(&mut world, floor, Material::lambert(Vec3::splat(0.5)));
-        add_mesh(&mut world, light, Material::lamp(Vec3::ONE));
-        check(file, world, expected, 64, &[LightSampling::Mis, LightSampling::Nee, LightSampling::Bsdf]);
-    }
-}
-
-#[test]
-fn noris_furnace() {
-    let Some(path) = shared("furnace.obj") else { return };
-    for (albedo, scatterings, expected) in [(0.5, 40, 2.0), (0.8, 80, 5.0), (0.5, 1, 1.5), (0.8, 1, 1.8)] {
-        let mut world = world(DVec3::new(0.1, -0.05, 0.2), DVec3::new(1.0, 0.3, -0.7), scatterings);
-        let walls = Material { emission: Vec3::ONE, ..Material::lambert(Vec3::splat(albedo)) };
-        add_mesh(&mut world, path.clone(), walls);
-        check(&format!("furnace {albedo}, {scatterings}"), world, expected, 8, &[LightSampling::Mis]);
-    }
-}
-
-#[test]
-fn pbrts_spheres() {
-    let inside = || world(DVec3::new(0.2, 0.1, -0.3), DVec3::new(1.0, 0.2, 0.1), 40);
-    let wall = Material::lambert(Vec3::splat(0.5));
-    let shell = |world: &mut World, material: Material| {
-        luxel_scene::spawn(world, (Sphere { radius: 1.0 }, Transform::default(), material));
-    };
-    for lights in [1u8, 4] {
-        let mut world = inside();
-        shell(&mut world, wall);
-        for _ in 0..lights {
-            let intensity = Vec3::splat(core::f32::consts::PI / f32::from(lights));
-            luxel_scene::spawn(&mut world, (PointLight { intensity }, Transform::default()));
-        }
-        check(&format!("{lights} point lights"), world, 1.0, 8, &[LightSampling::Mis, LightSampling::Bsdf]);
-    }
-    let mut world = inside();
-    shell(&mut world, Material { emission: Vec3::splat(0.5), ..wall });
-    check("shining sphere", world, 1.0, 64, &[LightSampling::Mis, LightSampling::Nee]);
 }

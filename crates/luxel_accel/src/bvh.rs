@@ -7,6 +7,8 @@
 //! at its median; below 60 levels, or where the depth bound comes near, likewise; a leaf never holds more than
 //! `MAX_LEAF_SIZE` primitives.
 //!
+//! The smaller of two children stands first (`siblings.rs`).
+//!
 //! Invariants, checked by [`Bvh::validate`]: the two children of a node stand side by side behind it, each node but
 //! the root is the child of one node, `skip` is the next node behind a subtree in depth-first order, every primitive
 //! is in exactly one leaf, boxes are equal to the union of their primitives' boxes.
@@ -25,6 +27,7 @@ mod linked;
 mod options;
 mod primitive;
 mod reinsert;
+mod siblings;
 mod split;
 mod sweep;
 mod top;
@@ -81,6 +84,7 @@ pub fn build_bvh(boxes: &[Aabb<f32>], options: &BvhOptions) -> Result<Bvh, Accel
         reinsert::optimize(&mut tree, &options);
         (nodes, order) = collapse::collapse(&tree, &order, &options);
     }
+    siblings::put_smaller_first(&mut nodes);
     build::set_skips(&mut nodes);
     Ok(Bvh { nodes, order })
 }

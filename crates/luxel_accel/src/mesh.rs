@@ -12,7 +12,7 @@ use crate::{AccelError, BvhOptions, build_bvh, sah_cost};
 pub struct MeshBvh {
     /// Nodes, the root first; a leaf's primitives are consecutive `triangles`.
     pub nodes: Vec<BvhNode>,
-    /// Triangles in leaf order, with material 0.
+    /// Triangles in leaf order, with material 0, each the light of its place.
     pub triangles: Vec<Triangle>,
     /// The root's box in the mesh's coordinates; empty without triangles.
     pub bounds: Aabb<f32>,
@@ -46,21 +46,35 @@ pub fn build_mesh(
     ids: &[u32],
     options: &BvhOptions,
 ) -> Result<MeshBvh, AccelError> {
-    if triangles.len() != ids.len() {
-        return Err(AccelError::IdCount { triangles: triangles.len(), ids: ids.len() });
-    }
-    let records = (triangles.par_iter().zip(ids).enumerate())
-        .map(|(triangle, (indices, &id))| record(positions, triangle, *indices, id))
-        .collect::<Result<Vec<Triangle>, AccelError>>()?;
+    let records = mesh_triangles(positions, triangles, ids)?;
     let boxes: Vec<Aabb<f32>> = records.par_iter().map(bounds).collect();
     let bvh = build_bvh(&boxes, options)?;
+    let in_slot = |(slot, &index): (usize, &u32)| Triangle { light: slot as u32, ..records[index as usize] };
     Ok(MeshBvh {
         bounds: root_bounds(&bvh.nodes),
-        triangles: bvh.order.par_iter().map(|&index| records[index as usize]).collect(),
+        triangles: bvh.order.par_iter().enumerate().map(in_slot).collect(),
         order: bvh.order,
         built_cost: sah_cost(&bvh.nodes),
         nodes: bvh.nodes,
     })
+}
+
+/// The triangles of a mesh in its own order, without a tree, for whoever builds one over several meshes. Each is the light
+/// of its place.
+///
+/// # Errors
+/// As [`build_mesh`], but for [`AccelError::TooManyPrimitives`].
+pub fn mesh_triangles(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    ids: &[u32],
+) -> Result<Vec<Triangle>, AccelError> {
+    if triangles.len() != ids.len() {
+        return Err(AccelError::IdCount { triangles: triangles.len(), ids: ids.len() });
+    }
+    (triangles.par_iter().zip(ids).enumerate())
+        .map(|(triangle, (indices, &id))| record(positions, triangle, *indices, id))
+        .collect()
 }
 
 /// Checks nodes against the triangles that their leaves list; see [`Bvh`](crate::Bvh).
@@ -93,7 +107,7 @@ impl MeshBvh {
         }
         let moved = |(old, &place): (&Triangle, &u32)| {
             let new = record(positions, place as usize, indices[place as usize], old.id)?;
-            Ok(Triangle { material: old.material, reserved: old.reserved, ..new })
+            Ok(Triangle { material: old.material, light: old.light, ..new })
         };
         self.triangles =
             self.triangles.par_iter().zip(&self.order).map(moved).collect::<Result<_, AccelError>>()?;
@@ -146,5 +160,5 @@ fn record(positions: &[Vec3], triangle: usize, indices: [u32; 3], id: u32) -> Re
         let is_good = position.is_finite() && position.abs().max_element() < FAR;
         if is_good { Ok(position.to_array()) } else { Err(AccelError::BadTriangle { triangle }) }
     };
-    Ok(Triangle { v0: vertex(0)?, id, v1: vertex(1)?, material: 0, v2: vertex(2)?, reserved: 0 })
+    Ok(Triangle { v0: vertex(0)?, id, v1: vertex(1)?, material: 0, v2: vertex(2)?, light: triangle as u32 })
 }

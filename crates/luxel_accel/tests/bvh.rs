@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use glam::Vec3;
 use luxel_accel::{
-    AccelError, Bvh, BvhOptions, MAX_BVH_DEPTH, build_bvh, build_mesh, build_tlas, depth, validate_tlas,
+    AccelError, Bvh, BvhOptions, BvhQuality, MAX_BVH_DEPTH, build_bvh, build_mesh, build_tlas, depth,
+    validate_tlas,
 };
 use luxel_flat::MAX_LEAF_SIZE;
 use luxel_geom::{Aabb, sphere};
@@ -182,9 +183,12 @@ proptest! {
             let lo = Vec3::from(lo.map(f32::from));
             Aabb { lo: lo * scale, hi: (lo + Vec3::from(extent.map(f32::from))) * scale }
         }).collect();
-        let bvh = build_bvh(&boxes, &BvhOptions { max_leaf_size, ..Default::default() }).unwrap();
-        prop_assert_eq!(bvh.validate(&boxes), Ok(()));
-        prop_assert!(depth(&bvh.nodes) <= MAX_BVH_DEPTH);
-        prop_assert!(bvh.nodes.iter().all(|n| n.primitives().1 <= max_leaf_size));
+        // The best preset is the one that reinserts most.
+        for options in [BvhOptions::default(), BvhQuality::Best.options()] {
+            let bvh = build_bvh(&boxes, &BvhOptions { max_leaf_size, ..options }).unwrap();
+            prop_assert_eq!(bvh.validate(&boxes), Ok(()));
+            prop_assert!(depth(&bvh.nodes) <= MAX_BVH_DEPTH);
+            prop_assert!(bvh.nodes.iter().all(|n| n.primitives().1 <= max_leaf_size));
+        }
     }
 }

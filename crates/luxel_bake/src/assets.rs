@@ -1,6 +1,7 @@
 //! One structure per asset in use: built when the first entity shows the asset, given up with the last.
 //!
 //! The key of a built structure is the asset itself (its `Arc`) with the settings that it was built by, so other content under an old id is noticed.
+//! A structure may follow its asset to such other content; else it is built anew.
 //! Hidden entities keep their asset's structure: showing them again costs nothing.
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -38,6 +39,17 @@ pub(crate) trait BakedAsset: Send + Sync + Sized + 'static {
         heaps: &mut Heaps,
         journal: &mut Journal,
     ) -> Result<Self::Built, BakeError>;
+    /// Brings the structure of the asset `old` to this one, which took its place, in the slots that it has; false, with
+    /// everything as it was, if it must be built.
+    fn follow(
+        &self,
+        _old: &Self,
+        _built: &mut Self::Built,
+        _heaps: &mut Heaps,
+        _journal: &mut Journal,
+    ) -> bool {
+        false
+    }
     /// Gives back what [`Self::build`] placed.
     fn release(built: &Self::Built, heaps: &mut Heaps, journal: &mut Journal);
     /// The counters of structures built and given up.
@@ -79,6 +91,21 @@ impl<A: BakedAsset> Built<A> {
     /// Every structure, by rising asset id.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (AssetId, &A, &A::Built)> {
         self.structures.iter().filter_map(|(id, s)| Some((*id, &*s.asset, s.outcome.as_ref().ok()?)))
+    }
+
+    /// Lets structures follow assets that were replaced, where they can.
+    fn follow(&mut self, assets: &Assets, settings: &A::Settings, heaps: &mut Heaps, journal: &mut Journal) {
+        let users = &self.users;
+        let kept = self.structures.iter_mut().filter(|(id, s)| users.contains(id) && s.settings == *settings);
+        for (id, structure) in kept {
+            let Some(asset) = A::find(assets, *id) else { continue };
+            if let Ok(built) = &mut structure.outcome
+                && !Arc::ptr_eq(asset, &structure.asset)
+                && asset.follow(&structure.asset, built, heaps, journal)
+            {
+                structure.asset = Arc::clone(asset);
+            }
+        }
     }
 
     fn release_unused(
@@ -149,6 +176,7 @@ pub(crate) fn build_assets<A: BakedAsset>(
         built.users.set(entity, object(entity).and_then(|object| A::shown_by(&object)).into_iter().collect());
     }
     let settings = A::settings(&wish);
+    built.follow(&assets, &settings, &mut heaps, &mut journal);
     built.release_unused(&assets, &settings, &mut heaps, &mut journal);
     built.build_missing(&assets, &settings, &mut heaps, &mut journal);
     for &entity in &touched.0 {

@@ -16,6 +16,7 @@ use crate::environment::{Surroundings, place_environment};
 use crate::features::{Features, find_features};
 use crate::images::{Images, place_images};
 use crate::instances::{Instances, place_objects, write_instances};
+use crate::joined::{Joined, join_meshes};
 use crate::journal::{Complaints, Revision};
 use crate::lights::{Lights, place_lights};
 use crate::materials::{MaterialSlots, shade};
@@ -67,6 +68,7 @@ pub fn install(world: &mut World) {
     world.insert_resource(Cloud::default());
     world.insert_resource(View::default());
     world.insert_resource(Instances::default());
+    world.insert_resource(Joined::default());
     world.insert_resource(Lights::default());
     world.insert_resource(Tlas::default());
     world.insert_resource(Features::default());
@@ -161,7 +163,7 @@ fn schedule() -> Schedule {
     );
     let shading = (find_textures, place_images, write_textures, shade, place_environment);
     let geometry = (build_assets::<MeshAsset>, build_assets::<VolumeAsset>, build_attributes, place_spheres);
-    let instances = (find_camera, place_objects, write_instances, place_lights, update_tlas);
+    let instances = (find_camera, place_objects, join_meshes, write_instances, place_lights, update_tlas);
     schedule.add_systems((propagate, find_touched).chain().in_set(BakeSet::Propagate));
     schedule.add_systems(shading.chain().in_set(BakeSet::Shading));
     schedule.add_systems(geometry.chain().in_set(BakeSet::Geometry));

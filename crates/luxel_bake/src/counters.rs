@@ -34,10 +34,16 @@ counters! {
     images_placed,
     /// Images taken from the texels, because nothing shows them any more or at another size.
     images_released,
-    /// Mesh BVHs built.
+    /// Mesh BVHs built; with one tree over all meshes, meshes put among the triangles.
     blas_built,
+    /// Mesh BVHs refitted in place, because their triangles moved.
+    blas_refitted,
     /// Mesh BVHs given up because nothing uses their mesh any more.
     blas_freed,
+    /// Trees over all meshes built.
+    joined_built,
+    /// Trees over all meshes refitted in place, because triangles moved.
+    joined_refitted,
     /// Attributes of meshes built.
     attributes_built,
     /// Attributes of meshes given up because nothing uses them any more.

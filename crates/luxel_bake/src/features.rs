@@ -4,7 +4,7 @@
 //! for is looked for again only when a heap that it was read from has another stamp or length.
 use bevy_ecs::prelude::*;
 use luxel_flat::{
-    Feature, FeatureSet, INSTANCE_ALPHA, INSTANCE_ATTRIBUTES, Instance, KIND_MESH, MATERIAL_DIELECTRIC,
+    Feature, FeatureSet, INSTANCE_ALPHA, INSTANCE_ATTRIBUTES, Instance, MATERIAL_DIELECTRIC,
     MATERIAL_EMISSIVE, MATERIAL_LAMBERT, MATERIAL_METAL, MATERIAL_PRINCIPLED, MATERIAL_SEMI_SPECULAR,
     MATERIAL_THIN, MaterialRecord, TEXTURE_ROLE_NORMAL,
 };
@@ -15,6 +15,7 @@ use crate::camera::View;
 use crate::cloud::Cloud;
 use crate::environment::Surroundings;
 use crate::instances::Instances;
+use crate::joined::Joined;
 use crate::journal::Journal;
 use crate::lights::Lights;
 use crate::store::Heaps;
@@ -24,8 +25,8 @@ use crate::store::Heaps;
 pub(crate) struct Features {
     all: FeatureSet,
     of_objects: FeatureSet,
-    /// Stamp and length of each heap that `of_objects` was read from.
-    key: [(u64, usize); 3],
+    /// Stamp and length of each heap, and stamp of the joined mesh, that `of_objects` was read from.
+    key: [(u64, usize); 4],
 }
 
 impl Features {
@@ -40,6 +41,7 @@ pub(crate) fn find_features(
     heaps: Res<Heaps>,
     cloud: Res<Cloud>,
     instances: Res<Instances>,
+    joined: Res<Joined>,
     volumes: Res<Built<VolumeAsset>>,
     environment: Res<Environment>,
     surroundings: Res<Surroundings>,
@@ -55,10 +57,11 @@ pub(crate) fn find_features(
         (records.revision(), records.len()),
         (instance_records.revision(), instance_records.len()),
         (spheres.revision(), spheres.len()),
+        (joined.revision(), 0),
     ];
     if key != features.key {
         features.key = key;
-        features.of_objects = of_objects(&heaps, &cloud, &instances, &volumes);
+        features.of_objects = of_objects(&heaps, &cloud, &instances, &joined, &volumes);
     }
     let camera = view.0.as_ref().ok();
     let all = (features.of_objects.union(lights.features()))
@@ -83,20 +86,26 @@ fn of_objects(
     heaps: &Heaps,
     cloud: &Cloud,
     instances: &Instances,
+    joined: &Joined,
     volumes: &Built<VolumeAsset>,
 ) -> FeatureSet {
     let (records, materials) = (heaps.instances.heap.as_slice(), heaps.materials.records.heap.as_slice());
-    let of_slots = |slots: &mut dyn Iterator<Item = u32>| {
-        slots.fold(FeatureSet::NONE, |set, slot| set.union(of_material(&materials[slot as usize])))
+    let mut bodies = Bodies::default();
+    let mut of_slots = |slots: &mut dyn Iterator<Item = u32>| {
+        slots.fold(FeatureSet::NONE, |set, slot| {
+            bodies.note(slot, &materials[slot as usize]);
+            set.union(of_material(&materials[slot as usize]))
+        })
     };
     let mut set = FeatureSet::NONE;
     if !cloud.structure().is_empty() {
         let live = cloud.structure().spheres().as_slice().iter().filter(|sphere| sphere.radius > 0.0);
         set = set.with(Feature::Spheres, true).union(of_slots(&mut live.map(|sphere| sphere.material)));
     }
-    for mesh in records.iter().filter(|record| record.kind == KIND_MESH && record.node_count > 0) {
-        let material = &materials[mesh.material_first as usize];
-        set = set.with(Feature::Triangles, true).union(of_material(material)).union(of_mesh(mesh, material));
+    for (mesh, material) in joined.surfaces(heaps) {
+        let used = of_slots(&mut [material].into_iter());
+        let own = of_mesh(&mesh, &materials[material as usize]);
+        set = set.with(Feature::Triangles, true).union(used).union(own);
     }
     for (slot, asset) in instances.volumes() {
         let record = records[slot as usize];
@@ -105,7 +114,23 @@ fn of_objects(
             set = set.with(Feature::Voxels, true).union(used);
         }
     }
-    set
+    set.with(Feature::NestedMedia, bodies.are_several)
+}
+
+/// The clear bodies of a scene: one material slot stands for each.
+#[derive(Default)]
+struct Bodies {
+    first: Option<u32>,
+    are_several: bool,
+}
+
+impl Bodies {
+    fn note(&mut self, slot: u32, record: &MaterialRecord) {
+        let is_thick = record.kind == MATERIAL_PRINCIPLED && record.flags & MATERIAL_THIN == 0;
+        if record.kind == MATERIAL_DIELECTRIC || is_thick && record.transmission > 0.0 {
+            self.are_several |= *self.first.get_or_insert(slot) != slot;
+        }
+    }
 }
 
 /// What only meshes can call for.

@@ -1,4 +1,5 @@
-//! Placed objects: the sphere cloud, mesh instances, volume instances, each with a slot that it keeps.
+//! Placed objects: the sphere cloud, mesh instances (or all meshes as one), volume instances, each with a slot that it
+//! keeps.
 //!
 //! Records are relative to the origin of tracer space. As long as that stays, only the records of touched
 //! objects are written; when it moves, all are.
@@ -8,7 +9,7 @@ use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3};
 use luxel_flat::{INSTANCE_ALPHA, Instance, KIND_MESH, KIND_SPHERES, KIND_VOXELS, Span, TEXTURE_ROLE_COLOR};
 use luxel_geom::Aabb;
-use luxel_scene::{AssetId, MeshAsset, Opacity, VolumeAsset};
+use luxel_scene::{AssetId, MeshAsset, MeshLevels, MeshStructure, Opacity, VolumeAsset};
 
 use crate::assets::Built;
 use crate::attributes::{Attributes, BuiltAttributes};
@@ -17,7 +18,7 @@ use crate::cloud::Cloud;
 use crate::identities::Identities;
 use crate::images::Images;
 use crate::journal::{Journal, Refusal, Topic};
-use crate::lattice::{Extent, tracer_anchor};
+use crate::lattice::{Extent, FARTHEST, tracer_anchor};
 use crate::materials::MaterialSlots;
 use crate::objects::{Object, ObjectItem, Touched};
 use crate::placement::Placement;
@@ -32,23 +33,34 @@ pub(crate) enum Part {
     Cloud,
     /// The mesh of an entity.
     Mesh(Entity),
+    /// All meshes, if there is one tree over them.
+    Joined,
     /// The volume of an entity.
     Volume(Entity),
 }
 
 /// What the record of a placed object is made of.
 #[derive(Clone, Copy, Debug)]
-struct Source {
-    placement: Placement,
+pub(crate) struct Source {
+    pub placement: Placement,
     /// Everything of the record that does not depend on the place.
-    header: Instance,
+    pub header: Instance,
     volume: Option<AssetId>,
+}
+
+impl Source {
+    /// What is no volume.
+    pub(crate) fn new(placement: Placement, header: Instance) -> Self {
+        Self { placement, header, volume: None }
+    }
 }
 
 /// Every placed object.
 #[derive(Resource, Default)]
 pub(crate) struct Instances {
     placed: BTreeMap<Part, (u32, Source)>,
+    /// Meshes that are no objects of their own to a ray, but pieces of the joined one.
+    pieces: BTreeMap<Entity, Source>,
     identities: Identities,
     anchor: DVec3,
 }
@@ -69,6 +81,28 @@ impl Instances {
         self.placed.values().filter_map(|(slot, source)| Some((*slot, source.volume?)))
     }
 
+    /// What the joined mesh is made of.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = &Source> {
+        self.pieces.values()
+    }
+
+    /// Notes what piece of the joined mesh an entity is now, if any.
+    fn note_piece(&mut self, entity: Entity, source: Option<Source>) {
+        let old = self.pieces.remove(&entity);
+        self.identities.replace(old.as_ref().map(id), source.as_ref().map(id));
+        self.pieces.extend(source.map(|source| (entity, source)));
+    }
+
+    /// Notes what the joined mesh is now. It has the identity of one of its pieces.
+    pub(crate) fn note_joined(
+        &mut self,
+        source: Option<Source>,
+        store: &mut Store<Instance>,
+        revision: u64,
+    ) -> Result<(), BakeError> {
+        self.place(Part::Joined, source, store, revision)
+    }
+
     /// Notes what a part is now (`None` for nothing) and gives it a slot or takes it away.
     fn note(
         &mut self,
@@ -77,9 +111,19 @@ impl Instances {
         store: &mut Store<Instance>,
         revision: u64,
     ) -> Result<(), BakeError> {
+        let old = self.placed.get(&part).map(|(_, source)| id(source));
+        self.identities.replace(old, source.as_ref().map(id));
+        self.place(part, source, store, revision)
+    }
+
+    fn place(
+        &mut self,
+        part: Part,
+        source: Option<Source>,
+        store: &mut Store<Instance>,
+        revision: u64,
+    ) -> Result<(), BakeError> {
         let old = self.placed.remove(&part);
-        let id = |source: &Source| source.header.stable_id;
-        self.identities.replace(old.as_ref().map(|(_, source)| id(source)), source.as_ref().map(id));
         match (old, source) {
             (Some((slot, _)), Some(source)) => _ = self.placed.insert(part, (slot, source)),
             (Some((slot, _)), None) => {
@@ -97,9 +141,14 @@ impl Instances {
 
     /// Where everything is, spheres included; `None` for an empty scene.
     fn extent(&self, cloud: &Cloud) -> Option<Extent> {
-        let others = self.placed.iter().filter(|(part, _)| **part != Part::Cloud);
-        Extent::of(cloud.extent().into_iter().chain(others.map(|(_, (_, source))| source.placement.extent())))
+        let objects = self.placed.iter().filter(|(part, _)| !matches!(part, Part::Cloud | Part::Joined));
+        let sources = objects.map(|(_, (_, source))| source).chain(self.pieces.values());
+        Extent::of(cloud.extent().into_iter().chain(sources.map(|source| source.placement.extent())))
     }
+}
+
+fn id(source: &Source) -> u32 {
+    source.header.stable_id
 }
 
 /// Where the structures of a scene are.
@@ -112,6 +161,7 @@ pub(crate) struct Structures<'w> {
     attributes: Res<'w, Attributes>,
     textures: Res<'w, Textures>,
     images: Res<'w, Images>,
+    wish: Res<'w, MeshStructure>,
 }
 
 /// Brings the list of placed objects up to date with every touched entity and the cloud.
@@ -128,6 +178,11 @@ pub(crate) fn place_objects(
         let object = objects.get(entity).ok();
         let mesh = object.as_ref().map_or(Ok(None), |object| structures.mesh(object));
         let mesh = journal.settle(entity, Topic::MeshInstance, mesh);
+        let (mesh, piece) = match structures.wish.levels {
+            MeshLevels::Two => (mesh, None),
+            MeshLevels::One => (None, mesh),
+        };
+        instances.note_piece(entity, piece);
         let volume = object.as_ref().map_or(Ok(None), |object| structures.volume(object));
         let volume = journal.settle(entity, Topic::VolumeInstance, volume);
         for (part, source) in [(Part::Mesh(entity), mesh), (Part::Volume(entity), volume)] {
@@ -149,16 +204,24 @@ impl Structures<'_> {
         let alpha = if self.lets_rays_pass(object, attributes) { INSTANCE_ALPHA } else { 0 };
         let header = Instance {
             kind: KIND_MESH,
-            node_first: mesh.nodes.first,
-            node_count: mesh.nodes.count,
-            primitive_first: mesh.triangles.first,
-            primitive_count: mesh.triangles.count,
+            node_first: mesh.tree.nodes.first,
+            node_count: mesh.tree.nodes.count,
+            primitive_first: mesh.tree.triangles.first,
+            primitive_count: mesh.tree.triangles.count,
             material_first,
             flags: attributes.map_or(0, BuiltAttributes::flags) | alpha,
             attribute_offset: attributes.map_or(0, BuiltAttributes::offset),
             ..Instance::default()
         };
-        source(object, mesh.bounds, header, None)
+        let source = source(object, mesh.tree.bounds, header, None)?;
+        let is_near = |source: &Source| source.placement.extent().farthest() <= FARTHEST;
+        match &source {
+            // The joined mesh is in coordinates of its own, as the spheres are.
+            Some(piece) if self.wish.levels == MeshLevels::One && !is_near(piece) => {
+                Err(Refusal::disabled(object, Disabled::OutOfRange))
+            }
+            _ => Ok(source),
+        }
     }
 
     /// True unless every point of a mesh is there for every ray, whatever its material allows.
@@ -199,7 +262,7 @@ impl Structures<'_> {
         };
         let placement =
             Placement::new(DAffine3::from_translation(self.cloud.anchor()), structure.bounds()).ok()?;
-        Some(Source { placement, header, volume: None })
+        Some(Source::new(placement, header))
     }
 }
 
@@ -229,7 +292,7 @@ pub(crate) fn write_instances(
         view.eye().map_or(instances.anchor, |eye| tracer_anchor(eye, instances.extent(&cloud).as_ref()));
     let parts: Vec<Part> = if anchor == instances.anchor {
         let of_entity = |entity: &Entity| [Part::Mesh(*entity), Part::Volume(*entity)];
-        touched.0.iter().flat_map(of_entity).chain([Part::Cloud]).collect()
+        touched.0.iter().flat_map(of_entity).chain([Part::Cloud, Part::Joined]).collect()
     } else {
         journal.counters.anchors_moved += 1;
         instances.placed.keys().copied().collect()
@@ -259,7 +322,8 @@ fn with_header(place: Instance, header: Instance) -> Instance {
 /// States whether an object is too far from the camera to be drawn.
 fn warn(part: Part, reason: Option<Disabled>, objects: &Query<Object>, journal: &mut Journal) {
     let (entity, topic) = match part {
-        Part::Cloud => return,
+        // What they are made of is near enough.
+        Part::Cloud | Part::Joined => return,
         Part::Mesh(entity) => (entity, Topic::MeshInstance),
         Part::Volume(entity) => (entity, Topic::VolumeInstance),
     };

@@ -34,6 +34,7 @@ pub(crate) enum Topic {
     Volume,
     VolumeInstance,
     Slot,
+    Joined,
     Tlas,
 }
 

@@ -35,6 +35,11 @@ impl Extent {
         things.into_iter().reduce(|a, b| a.union(&b))
     }
 
+    /// How far it reaches from the world's origin along any axis, at most.
+    pub(crate) fn farthest(&self) -> f64 {
+        self.lo.abs().max(self.hi.abs()).max_element() + self.reach
+    }
+
     /// Both.
     pub(crate) fn union(&self, other: &Self) -> Self {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi), reach: self.reach.max(other.reach) }

@@ -7,7 +7,8 @@
 //! A [`Baker`] is a schedule of systems (the sets are [`BakeSet`]s). One system asks bevy_ecs's change
 //! detection which objects were touched; the others make what they keep of a touched object equal to what
 //! it says now. Work that depends on several objects has a key: the TLAS the boxes that it was built over,
-//! the sphere cloud its options and root cell, the records their origin, an asset's structure the asset, attributes the
+//! the sphere cloud its options and root cell, the records their origin, an asset's structure the asset, the tree over all
+//! meshes its pieces, attributes the
 //! mesh as it was built and the kind of normals, texels the images in use and the [`TextureBudget`].
 //!
 //! ▪ Invariants. There is no dirty flag: a changed component or a changed key is the only trigger. What is
@@ -54,12 +55,14 @@ mod features;
 mod identities;
 mod images;
 mod instances;
+mod joined;
 mod journal;
 mod lattice;
 mod lights;
 mod material_record;
 mod materials;
 mod mesh_options;
+mod mesh_tree;
 mod meshes;
 mod objects;
 mod placement;

@@ -1,6 +1,6 @@
 //! The table of lights that are sampled, and the light tree over those that have a place.
 //!
-//! Order: distant lights; point lights and spotlights; spheres; triangles, mesh by mesh in slot order. Within a kind by
+//! Order: distant lights; point lights and spotlights; spheres; triangles, mesh by mesh as `Triangle::light` says. Within a kind by
 //! stable id, so that an edited world has the table of a fresh one. What the table is made of is its key: moving what
 //! does not shine changes nothing.
 //!
@@ -10,17 +10,20 @@ mod emitters;
 mod lamps;
 mod records;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use bevy_ecs::prelude::*;
 use luxel_accel::{LightBounds, build_light_tree};
 use luxel_flat::{
-    Feature, FeatureSet, Heap, LIGHT_DISTANT, LIGHT_SPHERE, LIGHT_TRIANGLE, LightRecord, MaterialRecord, NONE,
+    Feature, FeatureSet, Heap, Instance, LIGHT_DISTANT, LIGHT_SPHERE, LIGHT_TRIANGLE, LightRecord,
+    MaterialRecord, NONE, Span, Triangle,
 };
 
 use crate::BakeError;
 use crate::cloud::Cloud;
 use crate::instances::Instances;
+use crate::joined::Joined;
 use crate::journal::{BakeWarning, Journal, Topic};
 use crate::objects::{Object, Touched};
 use crate::store::Heaps;
@@ -35,7 +38,7 @@ pub(crate) const MAX_LIGHTS: usize = 1 << 20;
 pub(crate) struct Lights {
     lamps: BTreeMap<Entity, Vec<(u32, Lamp)>>,
     /// Stamps of what `emitters` was read from.
-    seen: [u64; 3],
+    seen: [u64; 4],
     emitters: Vec<Emitter>,
     /// What the table was made of; `None` if it is not to be trusted.
     made_of: Option<Key>,
@@ -77,6 +80,7 @@ pub(crate) fn place_lights(
     objects: Query<Object>,
     cloud: Res<Cloud>,
     instances: Res<Instances>,
+    joined: Res<Joined>,
     mut lights: ResMut<Lights>,
     mut heaps: ResMut<Heaps>,
     mut journal: Journal,
@@ -88,8 +92,8 @@ pub(crate) fn place_lights(
             None => _ = lights.lamps.remove(&entity),
         }
     }
-    lights.find(&heaps, &cloud);
-    let outcome = lights.update(&cloud, instances.anchor(), &mut heaps, &mut journal);
+    lights.find(&heaps, &cloud, &joined);
+    let outcome = lights.update((&cloud, &joined), instances.anchor(), &mut heaps, &mut journal);
     journal.error(Entity::PLACEHOLDER, Topic::Lights, outcome.err());
     let unsampled = lights.unsampled;
     let warning = (unsampled > 0).then_some(BakeWarning::UnsampledLights { triangles: unsampled as u64 });
@@ -98,22 +102,23 @@ pub(crate) fn place_lights(
 
 impl Lights {
     /// Looks for surfaces that shine, if anything changed that could be one.
-    fn find(&mut self, heaps: &Heaps, cloud: &Cloud) {
+    fn find(&mut self, heaps: &Heaps, cloud: &Cloud, joined: &Joined) {
         let seen = [
             heaps.materials.records.heap.revision(),
             heaps.instances.heap.revision(),
             cloud.structure().spheres().revision(),
+            joined.revision(),
         ];
         if seen != self.seen {
             self.seen = seen;
-            self.emitters = find_emitters(heaps, cloud);
+            self.emitters = find_emitters(heaps, cloud, joined);
         }
     }
 
     /// Makes the table anew if it is not the one of the lights.
     fn update(
         &mut self,
-        cloud: &Cloud,
+        (cloud, joined): (&Cloud, &Joined),
         anchor: glam::DVec3,
         heaps: &mut Heaps,
         journal: &mut Journal,
@@ -132,7 +137,7 @@ impl Lights {
             return Ok(());
         }
         self.made_of = None;
-        let table = make_table(&key, heaps);
+        let table = make_table(&key, joined, heaps);
         self.unsampled = table.unsampled;
         self.place(table, heaps, journal)?;
         self.made_of = Some(key);
@@ -177,7 +182,7 @@ impl Lights {
 }
 
 /// The records of all lights and the bounds of those that have a place.
-fn make_table(key: &Key, heaps: &Heaps) -> Table {
+fn make_table(key: &Key, joined: &Joined, heaps: &Heaps) -> Table {
     let [anchor, cloud_anchor] = key.anchors;
     let mut table = Table::default();
     for emitter in &key.emitters {
@@ -193,24 +198,38 @@ fn make_table(key: &Key, heaps: &Heaps) -> Table {
                 table.records.push(record);
                 table.bounds.push(bounds);
             }
-            Emitter::Mesh { ref instance, emission } => {
-                let count = instance.primitive_count as usize;
-                if table.records.len() + count > MAX_LIGHTS {
-                    table.unsampled += count;
+            Emitter::Mesh { ref instance, material, emission } => {
+                let triangles = shining_triangles(instance, material, joined, heaps);
+                if table.records.len() + triangles.len() > MAX_LIGHTS {
+                    table.unsampled += triangles.len();
                     continue;
                 }
-                table.lit.insert(instance.material_first, table.records.len() as u32);
-                let first = instance.primitive_first as usize;
-                let triangles = heaps.triangles.heap.as_slice().get(first..first + count).unwrap_or_default();
-                let lights = records::triangles(instance, emission, triangles);
-                lights.for_each(|(record, bounds)| {
+                table.lit.insert(material, table.records.len() as u32);
+                for (record, bounds) in records::triangles(instance, emission, &triangles) {
                     table.records.push(record);
                     table.bounds.push(bounds);
-                });
+                }
             }
         }
     }
     table
+}
+
+/// The triangles of an object's material, in the order of their lights.
+fn shining_triangles<'a>(
+    instance: &Instance,
+    material: u32,
+    joined: &Joined,
+    heaps: &'a Heaps,
+) -> Cow<'a, [Triangle]> {
+    let triangles = heaps.triangles.heap.as_slice();
+    match joined.slots_of(material) {
+        Some(slots) => slots.filter_map(|slot| triangles.get(slot as usize).copied()).collect(),
+        None => {
+            let all = Span { first: instance.primitive_first, count: instance.primitive_count };
+            Cow::Borrowed(triangles.get(all.range()).unwrap_or_default())
+        }
+    }
 }
 
 fn features(records: &[LightRecord]) -> FeatureSet {

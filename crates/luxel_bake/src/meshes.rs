@@ -1,14 +1,18 @@
 //! Meshes in the flat scene: a BVH and its triangles per mesh asset in use.
+//!
+//! With [`MeshLevels::One`] the triangles are placed without a BVH, in the mesh's order: attributes are named by their
+//! slots, and the tree over all meshes ([`joined`](crate::joined)) is built from them.
 use std::sync::Arc;
 
-use luxel_accel::{BvhOptions, build_mesh};
-use luxel_flat::Span;
-use luxel_geom::Aabb;
-use luxel_scene::{AssetId, Assets, MeshAsset, MeshStructure};
+use luxel_accel::{BvhOptions, MeshBvh, build_mesh, mesh_triangles};
+use luxel_flat::Triangle;
+use luxel_geom::{Aabb, triangle};
+use luxel_scene::{AssetId, Assets, MeshAsset, MeshLevels, MeshStructure};
 
 use crate::assets::BakedAsset;
 use crate::journal::{Journal, Topic};
 use crate::mesh_options::build_options;
+use crate::mesh_tree::MeshTree;
 use crate::objects::ObjectItem;
 use crate::store::Heaps;
 use crate::{BakeCounters, BakeError};
@@ -16,11 +20,9 @@ use crate::{BakeCounters, BakeError};
 /// Where a mesh stands.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BuiltMesh {
-    pub nodes: Span,
-    pub triangles: Span,
-    /// Box of the root, in the mesh's coordinates.
-    pub bounds: Aabb<f32>,
-    /// The run that built it: another one may have put the triangles in another order.
+    /// In the mesh's coordinates.
+    pub tree: MeshTree,
+    /// The run that placed the triangles as they are: another one may have put them in another order or elsewhere.
     pub built_in: u64,
 }
 
@@ -28,7 +30,8 @@ impl BakedAsset for MeshAsset {
     const KIND: &'static str = "mesh";
     const TOPIC: Topic = Topic::Mesh;
     type Built = BuiltMesh;
-    type Settings = BvhOptions;
+    /// How the tree of each mesh is built; `None` if it has none.
+    type Settings = Option<BvhOptions>;
 
     fn shown_by(object: &ObjectItem) -> Option<AssetId> {
         object.mesh.map(|instance| instance.mesh)
@@ -38,33 +41,59 @@ impl BakedAsset for MeshAsset {
         assets.mesh(id)
     }
 
-    fn settings(wish: &MeshStructure) -> BvhOptions {
-        build_options(wish)
+    fn settings(wish: &MeshStructure) -> Option<BvhOptions> {
+        (wish.levels == MeshLevels::Two).then(|| build_options(wish))
     }
 
     fn build(
         &self,
-        options: &BvhOptions,
+        options: &Option<BvhOptions>,
         heaps: &mut Heaps,
         journal: &mut Journal,
     ) -> Result<BuiltMesh, BakeError> {
         let mesh = &self.mesh;
-        let bvh = build_mesh(&mesh.positions, &mesh.triangles, &mesh.triangle_ids, options)?;
-        let revision = journal.revision();
-        Ok(BuiltMesh {
-            nodes: heaps.bvh_nodes.place(&bvh.nodes, revision)?,
-            triangles: heaps.triangles.place(&bvh.triangles, revision)?,
-            bounds: bvh.bounds,
-            built_in: revision,
-        })
+        let bvh = match options {
+            Some(options) => build_mesh(&mesh.positions, &mesh.triangles, &mesh.triangle_ids, options)?,
+            None => without_tree(mesh_triangles(&mesh.positions, &mesh.triangles, &mesh.triangle_ids)?),
+        };
+        let tree = MeshTree::place(&bvh, heaps, journal.revision())?;
+        Ok(BuiltMesh { tree, built_in: journal.revision() })
+    }
+
+    /// A mesh with the same triangles in other places is a deformed one.
+    fn follow(&self, old: &Self, built: &mut BuiltMesh, heaps: &mut Heaps, journal: &mut Journal) -> bool {
+        let (new, old) = (&self.mesh, &old.mesh);
+        if new.triangles != old.triangles || new.triangle_ids != old.triangle_ids {
+            return false;
+        }
+        let number = |id: u32| new.triangle_ids.binary_search(&id).ok().map(|index| index as u32);
+        let places = (new.positions.as_slice(), new.triangles.as_slice());
+        let Some(tree) = built.tree.refitted(places, number, |_| {}, heaps, journal.revision()) else {
+            return false;
+        };
+        // What belongs to the triangles depends on their places too: normals, tangents, lights.
+        *built = BuiltMesh { tree, built_in: journal.revision() };
+        journal.counters.blas_refitted += 1;
+        true
     }
 
     fn release(built: &BuiltMesh, heaps: &mut Heaps, journal: &mut Journal) {
-        heaps.bvh_nodes.release(built.nodes, journal.revision());
-        heaps.triangles.release(built.triangles, journal.revision());
+        built.tree.release(heaps, journal.revision());
     }
 
     fn counters(counters: &mut BakeCounters) -> (&mut u64, &mut u64) {
         (&mut counters.blas_built, &mut counters.blas_freed)
+    }
+}
+
+/// Triangles that are only a part of another tree.
+fn without_tree(triangles: Vec<Triangle>) -> MeshBvh {
+    let bounds = |one: &Triangle| triangle::bounds::<f32>(&one.vertices().map(glam::Vec3::from));
+    MeshBvh {
+        bounds: triangles.iter().map(bounds).fold(Aabb::empty(), |all, one| all.union(&one)),
+        nodes: Vec::new(),
+        order: (0..triangles.len() as u32).collect(),
+        triangles,
+        built_cost: 0.0,
     }
 }

@@ -42,6 +42,11 @@ impl Placement {
         if is_large || is_small || farthest > LARGEST { Err(Disabled::OutOfRange) } else { Ok(placement) }
     }
 
+    /// Where the object is, in world space.
+    pub(crate) fn world_from_object(&self) -> DAffine3 {
+        self.world_from_object
+    }
+
     /// Where the object is and how large.
     pub(crate) fn extent(&self) -> Extent {
         Extent::new(self.world_from_object.translation, self.reach())

@@ -2,15 +2,17 @@
 use bevy_ecs::prelude::World;
 use luxel_accel::SphereStructure;
 use luxel_flat::{FlatScene, KIND_MESH, KIND_SPHERES, KIND_VOXELS};
-use luxel_scene::{MeshAsset, VolumeAsset};
+use luxel_scene::{AssetId, MeshAsset, VolumeAsset};
 use serde::Serialize;
 
 use crate::assets::Built;
 use crate::attributes::Attributes;
 use crate::cloud::Cloud;
 use crate::images::Images;
+use crate::joined::Joined;
 use crate::journal::{BakeWarning, Complaints};
 use crate::materials::MaterialSlots;
+use crate::mesh_tree::MeshTree;
 use crate::publish::Published;
 
 /// Facts about the last published scene.
@@ -18,7 +20,7 @@ use crate::publish::Published;
 pub struct BakeReport {
     /// Spheres in the picture.
     pub spheres: u64,
-    /// Mesh instances in the picture.
+    /// Mesh instances in the picture; 1 if there is one tree over all of them.
     pub mesh_instances: u64,
     /// Volume instances in the picture.
     pub volume_instances: u64,
@@ -30,7 +32,7 @@ pub struct BakeReport {
     pub tlas_depth: u32,
     /// The structure over the spheres.
     pub sphere_cloud: SphereFacts,
-    /// Meshes in use.
+    /// Meshes in use; if there is one tree over all of them, that as the last.
     pub meshes: Vec<MeshFacts>,
     /// Volumes in use.
     pub volumes: Vec<VolumeFacts>,
@@ -65,11 +67,11 @@ pub struct SphereFacts {
 /// Facts about a mesh in use.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct MeshFacts {
-    /// Asset id.
+    /// Asset id; 0 for the tree over all meshes.
     pub asset: u32,
     /// Triangles.
     pub triangles: u32,
-    /// Nodes of its BVH.
+    /// Nodes of its BVH; 0 if it has none of its own.
     pub nodes: u32,
     /// Deepest level of its BVH; the root is level 0.
     pub depth: u32,
@@ -150,15 +152,17 @@ fn told<'a>(warnings: impl Iterator<Item = &'a BakeWarning>) -> Vec<String> {
 fn meshes(world: &World, scene: &FlatScene) -> Vec<MeshFacts> {
     let Some(built) = world.get_resource::<Built<MeshAsset>>() else { return Vec::new() };
     let attributes = world.get_resource::<Attributes>();
-    (built.iter())
-        .map(|(id, _, mesh)| MeshFacts {
-            asset: id.0,
-            triangles: mesh.triangles.count,
-            nodes: mesh.nodes.count,
-            depth: scene.bvh_nodes.as_slice().get(mesh.nodes.range()).map_or(0, luxel_accel::depth),
-            mended_normals: attributes.map_or(0, |attributes| attributes.mended(id)),
-        })
-        .collect()
+    let facts = |asset: u32, tree: &MeshTree, mended_normals| MeshFacts {
+        asset,
+        triangles: tree.triangles.count,
+        nodes: tree.nodes.count,
+        depth: scene.bvh_nodes.as_slice().get(tree.nodes.range()).map_or(0, luxel_accel::depth),
+        mended_normals,
+    };
+    let mended = |id: AssetId| attributes.map_or(0, |attributes| attributes.mended(id));
+    let joined = world.get_resource::<Joined>().and_then(Joined::tree);
+    let of_assets = built.iter().map(|(id, _, mesh)| facts(id.0, &mesh.tree, mended(id)));
+    of_assets.chain(joined.map(|tree| facts(0, tree, 0))).collect()
 }
 
 fn images(world: &World) -> Vec<ImageFacts> {

@@ -29,6 +29,11 @@ impl<T: Copy + Default + PartialEq> Store<T> {
         Ok(span)
     }
 
+    /// Writes a whole range that is in use.
+    pub(crate) fn overwrite(&mut self, span: Span, records: &[T], revision: u64) {
+        self.heap.write(span.first as usize, records, revision);
+    }
+
     /// A free range; its records are zero or what was last there.
     pub(crate) fn reserve(&mut self, count: u32, revision: u64) -> Result<Span, BakeError> {
         let span = self.spans.allocate(count).ok_or(BakeError::HeapFull)?;

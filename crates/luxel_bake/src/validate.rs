@@ -7,6 +7,7 @@ use luxel_scene::{MeshAsset, VolumeAsset};
 use crate::BakeError;
 use crate::assets::Built;
 use crate::cloud::Cloud;
+use crate::joined::Joined;
 use crate::store::Heaps;
 use crate::tlas::{Tlas, live_instances};
 
@@ -24,9 +25,13 @@ pub(crate) fn validate(world: &World) -> Result<(), BakeError> {
 }
 
 fn validate_meshes(world: &World, heaps: &Heaps) -> Result<(), BakeError> {
-    for (_, _, mesh) in world.get_resource::<Built<MeshAsset>>().iter().flat_map(|built| built.iter()) {
-        let nodes = &heaps.bvh_nodes.heap.as_slice()[mesh.nodes.range()];
-        validate_mesh(nodes, &heaps.triangles.heap.as_slice()[mesh.triangles.range()])?;
+    let built = world.get_resource::<Built<MeshAsset>>();
+    let trees = built.iter().flat_map(|built| built.iter()).map(|(_, _, mesh)| mesh.tree);
+    let joined = world.get_resource::<Joined>().and_then(Joined::tree).copied();
+    // Pieces of the joined mesh have no tree.
+    for tree in trees.filter(|tree| joined.is_none() || tree.nodes.count > 0).chain(joined) {
+        let nodes = &heaps.bvh_nodes.heap.as_slice()[tree.nodes.range()];
+        validate_mesh(nodes, &heaps.triangles.heap.as_slice()[tree.triangles.range()])?;
     }
     Ok(())
 }

@@ -69,6 +69,28 @@ fn materials_call_for_what_they_show() {
     }
 }
 
+/// It takes two clear bodies for one to be in the other; sheets are none.
+#[test]
+fn two_clear_bodies_call_for_nested_media() {
+    let clear =
+        |volume| Material::principled(Principled { transmission: 1.0, volume, ..Principled::default() });
+    let (glass, water, sheet) = (Material::dielectric(1.5), clear(Some(Volume::default())), clear(None));
+    for (materials, expected) in [
+        (vec![glass], false),
+        (vec![glass, sheet, Material::default()], false),
+        (vec![glass, glass], true),
+        (vec![glass, water], true),
+        (vec![sheet, sheet, water], false),
+    ] {
+        let mut studio = Studio::empty();
+        let balls: Vec<Entity> =
+            materials.iter().map(|material| studio.sphere(DVec3::ZERO, 1.0, *material)).collect();
+        assert_eq!(studio.run().features.has(Feature::NestedMedia), expected, "{materials:?}");
+        studio.world.entity_mut(balls[0]).insert(Visibility(false));
+        assert!(!studio.run().features.has(Feature::NestedMedia), "one of them is hidden");
+    }
+}
+
 /// Opacity is a mesh's; of a sphere it is told once that it has none.
 #[test]
 fn spheres_are_opaque() {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use luxel_engine::output::Precision;
 use luxel_engine::{
-    AovKind, BackendChoice, LightSampling, MAX_DEPTH, MeshAccel, MeshQuality, QUALITIES, Quality,
+    AovKind, BackendChoice, LightSampling, MAX_DEPTH, MeshAccel, MeshLevels, MeshQuality, QUALITIES, Quality,
     SphereAccel, ToneMap, View,
 };
 
@@ -147,6 +147,11 @@ pub(crate) struct RenderArgs {
     /// How much work goes into the trees of meshes. No picture depends on it [default: the scene's, else medium]
     #[arg(long, value_name = "PRESET", value_parser = values::named(MeshQuality::NAMES.to_vec()))]
     pub(crate) mesh_quality: Option<MeshQuality>,
+
+    /// A tree over each mesh and one over their places, or one over all triangles: for comparison, and not for scenes in
+    /// which things move. No picture depends on it [default: the scene's, else two]
+    #[arg(long, value_name = "NAME", value_parser = values::named(MeshLevels::NAMES.to_vec()))]
+    pub(crate) mesh_levels: Option<MeshLevels>,
 
     /// Scene of a glTF model, by name or by number from 0 [default: the model's]
     #[arg(long, value_name = "NAME")]
@@ -407,7 +412,8 @@ mod tests {
     #[test]
     fn options_are_read() {
         let line = "luxel render a.ron -o b.exr --size 8x4 --error 2% --aov depth,ids --exposure -1 --tone-map agx \
-                    --quality low --sphere-accel octree-base --mesh-accel bvh-escape --mesh-quality best";
+                    --quality low --sphere-accel octree-base --mesh-accel bvh-escape --mesh-quality best \
+                    --mesh-levels one";
         let Some(Command::Render(args)) = Cli::try_parse_from(line.split_whitespace()).unwrap().command
         else {
             panic!()
@@ -416,7 +422,8 @@ mod tests {
         assert_eq!(args.aov, [AovKind::Depth, AovKind::Ids]);
         assert_eq!((args.tone_map, args.view), (Some(ToneMap::AgX), View::PathTraced));
         assert_eq!((args.quality, args.sphere_accel), (Some(Quality::Low), Some(SphereAccel::OctreeBase)));
-        let meshes = (args.mesh_accel, args.mesh_quality);
-        assert_eq!(meshes, (Some(MeshAccel::BvhEscape), Some(MeshQuality::Best)));
+        let meshes = (args.mesh_accel, args.mesh_quality, args.mesh_levels);
+        let expected = (Some(MeshAccel::BvhEscape), Some(MeshQuality::Best), Some(MeshLevels::One));
+        assert_eq!(meshes, expected);
     }
 }

@@ -61,10 +61,12 @@ fn structures(info: &SceneInfo) -> String {
     );
     for mesh in &baked.meshes {
         let (asset, triangles, nodes, depth) = (mesh.asset, mesh.triangles, mesh.nodes, mesh.depth);
-        put(
-            &mut text,
-            format_args!("  mesh {asset}: BVH of {triangles} triangles, {nodes} nodes, depth {depth}"),
-        );
+        let name = if asset == 0 { "all meshes".to_owned() } else { format!("mesh {asset}") };
+        let tree = match nodes {
+            0 => format!("{triangles} triangles, in the tree over all meshes"),
+            _ => format!("BVH of {triangles} triangles, {nodes} nodes, depth {depth}"),
+        };
+        put(&mut text, format_args!("  {name}: {tree}"));
     }
     for volume in &baked.volumes {
         let (asset, voxels, nodes, levels) = (volume.asset, volume.voxels, volume.nodes, volume.levels);

@@ -61,6 +61,7 @@ fn job(args: &RenderArgs) -> RenderJob {
         sphere_accel: args.sphere_accel,
         mesh_accel: args.mesh_accel,
         mesh_quality: args.mesh_quality,
+        mesh_levels: args.mesh_levels,
         camera: args.camera.clone(),
         tone_map: args.tone_map,
         exposure: args.exposure,

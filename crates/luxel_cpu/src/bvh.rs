@@ -48,7 +48,14 @@ pub fn enters_root<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>) -> bool {
 /// Visits the leaves that a ray enters, the nearer first. The ray enters the root's box.
 #[inline(always)]
 pub fn walk<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>, leaves: impl Leaves<R>) -> Walk {
-    Walker::<R, _, STACK_SIZE>::new(nodes, ray, leaves).run()
+    Walker::<R, _, false, STACK_SIZE>::new(nodes, ray, leaves).run()
+}
+
+/// Visits the leaves that a ray for any hit enters: the nearer first, and of two boxes around its start the second, where
+/// builders put what is likelier to end it. The ray enters the root's box.
+#[inline(always)]
+pub fn walk_for_any<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>, leaves: impl Leaves<R>) -> Walk {
+    Walker::<R, _, true, STACK_SIZE>::new(nodes, ray, leaves).run()
 }
 
 /// Visits the leaves that a ray enters in depth-first order, by skip pointers (escape indices) alone: without a stack, but
@@ -73,8 +80,8 @@ impl Walk {
     }
 }
 
-/// The state of a walk.
-struct Walker<'a, R: Real, L, const SIZE: usize> {
+/// The state of a walk, for any hit or for the closest.
+struct Walker<'a, R: Real, L, const ANY: bool, const SIZE: usize> {
     nodes: &'a [BvhNode],
     ray: SlabRay<R>,
     leaves: L,
@@ -84,7 +91,7 @@ struct Walker<'a, R: Real, L, const SIZE: usize> {
     waiting: usize,
 }
 
-impl<'a, R: Real, L: Leaves<R>, const SIZE: usize> Walker<'a, R, L, SIZE> {
+impl<'a, R: Real, L: Leaves<R>, const ANY: bool, const SIZE: usize> Walker<'a, R, L, ANY, SIZE> {
     #[inline(always)]
     fn new(nodes: &'a [BvhNode], ray: &SlabRay<R>, leaves: L) -> Self {
         let walk = Walk { node_count: 1, is_sound: true };
@@ -136,7 +143,8 @@ impl<'a, R: Real, L: Leaves<R>, const SIZE: usize> Walker<'a, R, L, SIZE> {
         let PairHit { enter, hits } = pair_ray.test([a_lo, b_lo], [a_hi, b_hi], self.ray.t_max);
         // Branches, no selection: a branch that was foreseen lets the next node be read before this one is tested.
         if hits == 0b11 {
-            return Some(if enter[1] < enter[0] {
+            let second_first = if ANY { enter[1] <= enter[0] } else { enter[1] < enter[0] };
+            return Some(if second_first {
                 self.push(first, a.leaf, enter[0]);
                 b.leaf
             } else {
@@ -272,7 +280,7 @@ mod tests {
             slab_ray.t_max
         };
         let walk = match enters_root(nodes, &slab_ray) {
-            true => Walker::<f32, _, SIZE>::new(nodes, &slab_ray, visit_leaf).run(),
+            true => Walker::<f32, _, false, SIZE>::new(nodes, &slab_ray, visit_leaf).run(),
             false => Walk::ROOT_MISSED,
         };
         entries.sort_unstable();
@@ -296,6 +304,34 @@ mod tests {
             entries += roomy.len();
         }
         assert!(entries > 10_000, "{entries}");
+    }
+
+    #[test]
+    fn around_its_start_a_ray_enters_the_first_box_first_and_for_any_hit_the_second() {
+        let leaf = |r: f32, first| BvhNode {
+            lo: [-r; 3],
+            hi: [r; 3],
+            skip: first + 2,
+            leaf: BvhNode::pack_leaf(first, 1),
+        };
+        let root = BvhNode { skip: 3, leaf: 1, ..leaf(2.0, 0) };
+        let nodes = [root, leaf(1.0, 0), leaf(2.0, 1)];
+        let order = |x: f32, is_any: bool| {
+            let ray = SlabRay::<f32>::new(&Ray::new(glam::Vec3::new(x, 0.1, 0.2), glam::Vec3::X));
+            let mut visited = Vec::new();
+            let visit = |first: u32, _: u32| {
+                visited.push(first);
+                ray.t_max
+            };
+            match is_any {
+                true => walk_for_any(&nodes, &ray, visit),
+                false => walk(&nodes, &ray, visit),
+            };
+            visited
+        };
+        assert_eq!((order(0.0, false), order(0.0, true)), (vec![0, 1], vec![1, 0]));
+        // Elsewhere the nearer comes first.
+        assert_eq!((order(-1.5, false), order(-1.5, true)), (vec![1, 0], vec![1, 0]));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::Exclusion;
 use crate::alpha::passes_alpha;
 use crate::bvh::{self, Leaves, Walk};
 use crate::hit::PrimitiveHit;
-use crate::query::{Query, Search};
+use crate::query::{Query, Search, Wanted};
 
 /// The wanted triangle along a ray in the mesh's space.
 pub fn intersect<R: Real>(query: &Query<'_, R>, counters: &mut Counters) -> Option<PrimitiveHit<R>> {
@@ -31,6 +31,7 @@ pub fn intersect<R: Real>(query: &Query<'_, R>, counters: &mut Counters) -> Opti
     let walk = match scene.mesh_accel {
         MeshAccel::Naive => Walk::over_one_leaf(instance.primitive_count, &mut found),
         MeshAccel::Escape => bvh::walk_by_skips(nodes, ray, &mut found),
+        MeshAccel::Bvh if query.wanted == Wanted::Any => bvh::walk_for_any(nodes, ray, &mut found),
         MeshAccel::Bvh => bvh::walk(nodes, ray, &mut found),
     };
     let Found { search, test_count, .. } = found;
@@ -95,8 +96,8 @@ pub fn intersect_triangle<R: Real>(
 #[inline(always)]
 fn corners<R: Real>(record: &Triangle) -> Corners<R> {
     let row = |v: [f32; 3], word: u32| [v[0], v[1], v[2], f32::from_bits(word)];
-    let Triangle { v0, id, v1, material, v2, reserved } = *record;
-    Corners::from_rows([row(v0, id), row(v1, material), row(v2, reserved)])
+    let Triangle { v0, id, v1, material, v2, light } = *record;
+    Corners::from_rows([row(v0, id), row(v1, material), row(v2, light)])
 }
 
 /// The vertices of a triangle in the tracer's scalar.

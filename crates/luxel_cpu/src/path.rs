@@ -1,8 +1,8 @@
 //! The state of a path between two bounces.
-use luxel_flat::NONE;
 use luxel_geom::{Ray, Real, Vector};
 
 use crate::Exclusion;
+use crate::medium::Media;
 
 /// A path in flight. The GPU keeps the same in `luxel_flat::Path`.
 #[derive(Clone, Copy, Debug)]
@@ -22,8 +22,8 @@ pub struct PathState<R: Real> {
     pub pdf: R,
     /// Unit normal of the surface that the ray left: what the light tree weighed.
     pub normal: R::Vec3,
-    /// Material slot of the medium that the ray runs in, or `NONE`.
-    pub medium: u32,
+    /// The clear bodies that the ray is in.
+    pub media: Media,
     /// Surfaces met so far.
     pub bounce: u32,
     /// Pixel index, `y · width + x`.
@@ -45,7 +45,7 @@ impl<R: Real> PathState<R> {
             eta_scale: R::ONE,
             pdf: R::ZERO,
             normal: R::Vec3::splat(R::ZERO),
-            medium: NONE,
+            media: Media::FREE_SPACE,
             bounce: 0,
             pixel,
             sample,

@@ -1,11 +1,11 @@
 //! What happens at the end of a ray: light is gathered, lights are sampled, and the path goes on or ends.
-use luxel_flat::{Counter, Counters, Feature, FeatureSet, FlatScene, MATERIAL_UNLIT, SceneParams};
+use luxel_flat::{Counter, Counters, Feature, FeatureSet, FlatScene, MATERIAL_UNLIT, NONE, SceneParams};
 use luxel_geom::{Ray, Real, Vector, rng};
 
 use crate::alpha::ray_coins;
 use crate::bsdf::{self, BsdfSample, Geometry};
 use crate::lights::{self, LightSample, Receiver, shadow};
-use crate::medium::{medium_beyond, medium_transmittance};
+use crate::medium::{immersed, is_no_border, media_towards, medium_transmittance, surrounding};
 use crate::surface::Surface;
 use crate::{Exclusion, Hit, PathState, sky};
 
@@ -22,7 +22,7 @@ pub fn shade<R: Real>(
     counters: &mut Counters,
 ) {
     let distance = end.map_or(R::FAR, |(hit, _)| hit.on.t);
-    let transmittance = medium_transmittance(scene, features, path.medium, distance, counters);
+    let transmittance = medium_transmittance(scene, features, path.media.innermost(), distance, counters);
     path.throughput = path.throughput * transmittance;
     let Some((hit, surface)) = end else {
         let light = sky::gather(scene, features, path.ray.direction, path.pdf, counters);
@@ -72,6 +72,13 @@ fn go_on<R: Real>(
     counters: &mut Counters,
 ) -> bool {
     let geometry = surface.facing(path.ray.direction);
+    if is_no_border(features, path.media, surface, &geometry) {
+        go_straight_on(scene, features, path, (hit, surface, &geometry), counters);
+        return true;
+    }
+    let around = surrounding(features, path.media, surface, &geometry);
+    counters[Counter::NestedBorders] += u64::from(around != NONE);
+    let surface = &immersed(scene, surface, around);
     if features.has(Feature::Lights) && !bsdf::is_delta(&surface.bsdf) {
         let block = rng::bounce_block(path.bounce - 1) + 1;
         let u = rng::uniform4::<R>(path.pixel, path.sample, block, scene.params.seed);
@@ -104,7 +111,7 @@ fn gather_light<R: Real>(
     {
         return;
     }
-    let medium = medium_towards(scene, features, path.medium, surface, geometry, light.wi);
+    let medium = media_towards(features, path.media, surface, geometry, light.wi, counters).innermost();
     let transmittance = medium_transmittance::<R>(scene, features, medium, light.distance, counters);
     path.radiance = path.radiance + radiance * transmittance;
 }
@@ -125,37 +132,48 @@ fn scatter<R: Real>(
     else {
         return false;
     };
-    counters[Counter::ScatteredRays] += 1;
     path.throughput = path.throughput * weight;
     path.eta_scale *= eta_scale;
-    path.medium = medium_towards(scene, features, path.medium, surface, geometry, wi);
+    leave(scene, features, path, (hit, surface, geometry), (wi, pdf), counters);
+    true
+}
+
+/// Lets the path's ray cross a surface that is no border to it.
+fn go_straight_on<R: Real>(
+    scene: &FlatScene,
+    features: FeatureSet,
+    path: &mut PathState<R>,
+    shaded: Shaded<R>,
+    counters: &mut Counters,
+) {
+    counters[Counter::NestedBorders] += 1;
+    // No light could have been sampled instead: the border would have been in its way.
+    let towards = (path.ray.direction, R::ZERO);
+    leave(scene, features, path, shaded, towards, counters);
+}
+
+/// Starts the path's next ray, in a direction of this density.
+fn leave<R: Real>(
+    scene: &FlatScene,
+    features: FeatureSet,
+    path: &mut PathState<R>,
+    (hit, surface, geometry): Shaded<R>,
+    (wi, pdf): (R::Vec3, R),
+    counters: &mut Counters,
+) {
+    counters[Counter::ScatteredRays] += 1;
+    path.media = media_towards(features, path.media, surface, geometry, wi, counters);
     path.ray = Ray::new(surface.place.spawn_origin(wi), wi);
     path.pdf = pdf;
     path.normal = surface.shading_normal;
     let how = shadow::exclude_towards(surface, wi);
     path.exclusion =
         Exclusion { instance: hit.instance, primitive: hit.on.slot, how, coins: coins_of(scene, path) };
-    true
 }
 
 /// The coins of the rays that leave the surface that was just met.
 fn coins_of<R: Real>(scene: &FlatScene, path: &PathState<R>) -> u32 {
     ray_coins(scene.params.seed, path.pixel, path.sample, path.bounce)
-}
-
-/// The medium that a ray which leaves a surface runs in.
-fn medium_towards<R: Real>(
-    scene: &FlatScene,
-    features: FeatureSet,
-    medium: u32,
-    surface: &Surface<R>,
-    geometry: &Geometry<R>,
-    wi: R::Vec3,
-) -> u32 {
-    if wi.dot(geometry.geometric) >= R::ZERO {
-        return medium;
-    }
-    medium_beyond(scene, features, medium, surface.material, geometry.front)
 }
 
 /// Russian roulette (pbrt-v4 §13.4.2): a dim path ends with probability `1 − brightness`; the others carry its

@@ -52,7 +52,7 @@ impl<R: Real> Surface<R> {
             shading_normal: place.normal,
             bsdf: Bsdf::of(material),
             emission: emitted_radiance::<R>(features, material, counters),
-            light: light(instance, hit, material),
+            light: light(scene, hit, material),
             material: hit.on.material,
         };
         if features.has(Feature::Attributes)
@@ -122,10 +122,11 @@ fn emitted_radiance<R: Real>(
     R::Vec3::from_array(material.emission)
 }
 
-/// The light that a surface is in the table of lights: those of an entity's primitives stand in slot order.
-fn light<R: Real>(instance: &Instance, hit: &Hit<R>, material: &MaterialRecord) -> u32 {
-    if material.light_first == NONE || instance.kind != KIND_MESH {
+/// The light that a surface is in the table of lights; triangles say which of their material's.
+fn light<R: Real>(scene: &FlatScene, hit: &Hit<R>, material: &MaterialRecord) -> u32 {
+    let kind = scene.instances.as_slice()[hit.instance as usize].kind;
+    if material.light_first == NONE || kind != KIND_MESH {
         return material.light_first;
     }
-    material.light_first.wrapping_add(hit.on.slot.wrapping_sub(instance.primitive_first))
+    material.light_first.wrapping_add(scene.triangles.as_slice()[hit.on.slot as usize].light)
 }

@@ -2,7 +2,9 @@
 use bevy_ecs::prelude::*;
 use luxel_film::{StopRule, ToneMap};
 use luxel_flat::FeatureSet;
-use luxel_scene::{LightSampling, MeshAccel, MeshQuality, RenderSettings, SphereAccel, ToneMapping};
+use luxel_scene::{
+    LightSampling, MeshAccel, MeshLevels, MeshQuality, RenderSettings, SphereAccel, ToneMapping,
+};
 
 use crate::{BackendChoice, Engine, EngineError, Quality};
 
@@ -37,6 +39,8 @@ pub struct RenderJob {
     pub mesh_accel: Option<MeshAccel>,
     /// How much work goes into the trees of meshes.
     pub mesh_quality: Option<MeshQuality>,
+    /// Whether each mesh has its tree, or all have one.
+    pub mesh_levels: Option<MeshLevels>,
     /// Name of the camera.
     pub camera: Option<String>,
     /// Curve from radiance to display.
@@ -64,7 +68,7 @@ impl RenderJob {
         if let Some(accel) = self.sphere_accel {
             engine.use_sphere_accel(accel);
         }
-        engine.use_mesh_structure(self.mesh_accel, self.mesh_quality);
+        engine.use_mesh_structure(self.mesh_accel, self.mesh_quality, self.mesh_levels);
         let mut settings = engine.settings();
         (settings.width, settings.height) = self.size.unwrap_or((settings.width, settings.height));
         settings.spp = self.samples().unwrap_or(settings.spp);

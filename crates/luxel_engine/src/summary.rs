@@ -167,6 +167,12 @@ fn doubts(counters: &Counters) -> Vec<String> {
     if dropped > 0 {
         doubts.push(format!("{dropped} samples were not finite and were left out"));
     }
+    let forgotten = counters[Counter::MediaOverflows];
+    if forgotten > 0 {
+        doubts.push(format!(
+            "paths were in more than four clear bodies at once: {forgotten} times the outermost was forgotten"
+        ));
+    }
     doubts
 }
 

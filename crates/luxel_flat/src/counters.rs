@@ -66,6 +66,8 @@ counters! {
     AlphaTests => "alpha_tests",
     /// Segments of paths through a medium that absorbs.
     AbsorbingSegments => "absorbing_segments",
+    /// Borders of bodies that were met inside other bodies.
+    NestedBorders => "nested_borders",
     /// Lights sampled.
     LightSamples => "light_samples",
     /// Nodes of the light tree that were weighed.
@@ -96,6 +98,8 @@ counters! {
     NonFiniteSamples => "non_finite_samples",
     /// Loops of searches that ended before they were done; 0 unless a structure is damaged or a driver ends long loops.
     TraversalCaps => "traversal_caps",
+    /// Bodies that were forgotten because a path was in more than four; 0 in a sound scene.
+    MediaOverflows => "media_overflows",
 }
 
 /// A number for each [`Counter`].

@@ -183,6 +183,16 @@ features! {
         counters: &[Counter::AbsorbingSegments],
         nodes: &[],
     }
+    /// Clear bodies inside clear bodies.
+    NestedMedia {
+        name: "nested_media",
+        used: "there are several clear bodies, one of which may hold another",
+        unused: "there are no two clear bodies",
+        symbols: &["surrounding_index"],
+        bindings: &[],
+        counters: &[Counter::NestedBorders],
+        nodes: &[],
+    }
     /// Normals, texture coordinates and colours of a mesh's own.
     Attributes {
         name: "attributes",

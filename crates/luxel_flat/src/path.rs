@@ -55,8 +55,10 @@ shared_struct! {
         pub normal: u32,
         /// Radiance that the path gathers if nothing is in the way.
         pub shadow_radiance: [f32; 3],
-        /// Absorption of the medium that the ray runs in, as a material slot; `NONE` in free space.
-        pub medium: u32,
+        /// Always 0.
+        pub reserved: u32,
+        /// Clear bodies that the ray is in, innermost first, as material slots; `NONE` where there are no more.
+        pub media: [u32; 4],
     }
 }
 

@@ -101,8 +101,8 @@ shared_struct! {
         pub material: u32,
         /// Third vertex.
         pub v2: [f32; 3],
-        /// Always 0.
-        pub reserved: u32,
+        /// The light that the triangle is if its material shines, counted from `MaterialRecord::light_first`.
+        pub light: u32,
     }
 }
 
@@ -227,7 +227,8 @@ shared_struct! {
         pub alpha: f32,
         /// Below this opacity a surface of `MATERIAL_ALPHA_MASK` is not there.
         pub alpha_cutoff: f32,
-        /// Light of the entity's first primitive in the table of lights, or `NONE`; the others follow in slot order.
+        /// Light of the entity's first primitive in the table of lights, or `NONE`; the others follow, as `Triangle::light`
+        /// says.
         pub light_first: u32,
         /// First `TextureSlot`.
         pub texture_first: u32,

@@ -1,10 +1,11 @@
 //! A shading normal whose mirror direction stays above the geometric surface.
 //!
 //! Interpolated and mapped normals can mirror a view into the surface, where a specular lobe is black. The mirror
-//! direction is lifted to the least angle that is allowed, straight towards the geometric normal, and the normal
-//! becomes the half vector of view and lifted direction (Keller et al. 2017, "The Iray Light Transport Simulation",
-//! consistent normals; Cycles' `ensure_valid_specular_reflection` bends the normal in another plane). Normals that are
-//! valid are not touched, and the change is continuous where they cease to be.
+//! direction is lifted along the shading normal to the least angle that is allowed, and the normal becomes the half
+//! vector of view and lifted direction (Keller et al. 2017, "The Iray Light Transport Simulation", consistent normals;
+//! Cycles' `ensure_valid_specular_reflection` bends the normal in another plane). Normals that are valid are not
+//! touched, and the change is continuous where they cease to be. Lifted straight towards the geometric normal, as it
+//! once was, a normal that turns away from the view came out leaning to its other side.
 use crate::optics::reflect;
 use crate::{Real, Vector};
 
@@ -29,7 +30,11 @@ pub fn valid_shading_normal<R: Real>(ng: R::Vec3, ns: R::Vec3, wo: R::Vec3) -> R
     if mirrored.dot(ng) >= least && wo.dot(ns) > R::ZERO {
         return ns;
     }
-    let level = mirrored - ng * mirrored.dot(ng);
+    // The level part of mirrored + ns · lift for the lift that reaches `least`, times ns·ng: a normal below the
+    // surface counts as one that lies in it.
+    let upright = ns.dot(ng);
+    let [ns_level, wo_level] = [ns - ng * upright, wo - ng * cos_view];
+    let level = ns_level * (least + cos_view) - wo_level * upright.max(R::ZERO);
     let length = level.length();
     if length <= R::ZERO {
         return ng;

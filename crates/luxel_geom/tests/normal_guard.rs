@@ -77,3 +77,18 @@ fn bending_starts_continuously() {
         assert!((at(tilt + step) - at(tilt)).length() < 2.0 * step, "{tilt}");
     }
 }
+
+/// Seen from the side to which it falls off or from the other, a steep face of a normal map leans its own way.
+#[test]
+fn a_steep_normal_leans_the_way_that_it_did() {
+    let mut random = Random::new(4);
+    for _ in 0..100_000 {
+        let ng = random.direction().normalize();
+        let (high, steep) = (random.between(0.87, 1.0), random.between(-0.2, 0.1));
+        let wo = view(&mut random, ng, high);
+        let ns = view(&mut random, ng, steep);
+        let n = valid_shading_normal::<f32>(ng, ns, wo);
+        let (level, before) = (n - ng * n.dot(ng), ns - ng * ns.dot(ng));
+        assert!(level.dot(before) > 0.3, "{ng} {ns} {wo}: {n}");
+    }
+}

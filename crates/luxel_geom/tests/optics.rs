@@ -34,6 +34,44 @@ fn fresnel_equals_the_trigonometric_form() {
     }
 }
 
+/// L05: a million cosines over indices from 0.3 to 4, singles against doubles of the same numbers: right to 2e-6. Beside
+/// the critical angle the reflectance rises like a square root, and one rounding shows by its own root.
+#[test]
+fn l05_singles_are_right_at_every_angle() {
+    const COSINES: u32 = 100_000;
+    let mut worst = 0.0f64;
+    for eta in [0.3f32, 0.5, 1.0 / 1.5, 0.9, 1.1, 1.33, 1.5, 2.0, 2.4, 4.0] {
+        for k in 0..COSINES {
+            let cos_i = k as f32 / (COSINES - 1) as f32;
+            let single = f64::from(fresnel_dielectric(cos_i, eta).reflectance);
+            let exact = fresnel_dielectric(f64::from(cos_i), f64::from(eta)).reflectance;
+            assert!((0.0..=1.0).contains(&single));
+            let distance = (1.0 - f64::from(cos_i).powi(2)) / f64::from(eta).powi(2) - 1.0;
+            let off = (single - exact).abs();
+            if distance.abs() > 0.1 {
+                worst = worst.max(off);
+            } else {
+                let bound = (8.0 * f64::from(f32::EPSILON) / distance.abs().sqrt()).min(1e-3);
+                assert!(off <= bound, "{eta} {cos_i}: {single} for {exact}");
+            }
+        }
+    }
+    assert!(worst <= 2e-6, "{worst:e}");
+}
+
+/// L04: a millionth of a radian changes the reflectance by a hundredth at most, on both sides of the critical angle.
+#[test]
+fn l04_the_reflectance_is_continuous_at_the_critical_angle() {
+    let eta = 1.0 / 1.5f64;
+    let critical = eta.asin();
+    let at = |step: i32| fresnel_dielectric((critical + f64::from(step) * 1e-6).cos(), eta).reflectance;
+    for step in -1000..1000 {
+        let (here, next) = (at(step), at(step + 1));
+        assert!((0.0..=1.0).contains(&here) && (next - here).abs() <= 1e-2, "{step}: {here}, {next}");
+    }
+    assert!(at(-1000) < 0.9 && at(1) == 1.0);
+}
+
 #[test]
 fn known_values() {
     // Glass head-on reflects ((n − 1) / (n + 1))² = 4 %, from both sides; grazing light is all reflected.

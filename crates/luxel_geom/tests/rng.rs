@@ -1,4 +1,4 @@
-//! Random numbers by address: the published function, uniform, and without a trace of the address.
+//! Random numbers by address: the published function, uniform, and without a trace of the address (L15).
 use luxel_geom::rng::{self, bounce_block, pcg4d, uniform, uniform4};
 
 #[test]

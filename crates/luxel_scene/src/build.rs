@@ -42,11 +42,10 @@ impl ImageAsset {
     /// Numbers of a recipe that are out of range; a file that cannot be used.
     pub fn from_source(source: ImageSource) -> Result<Self, SceneError> {
         name_flaw("image", check_image_source(&source))?;
-        let source = match source {
-            ImageSource::File(path) => ImageSource::File(canonical(&path)?),
-            ImageSource::ModelImage(path, number) => ImageSource::ModelImage(canonical(&path)?, number),
-            recipe => recipe,
-        };
+        let mut source = source;
+        for path in source.paths_mut() {
+            *path = canonical(path)?;
+        }
         Models::default().image(source)
     }
 }

@@ -28,7 +28,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Invariants: an id, of an entity or an asset, is never used twice; an asset never changes; what
+//! Invariants: an id, of an entity or an asset, is never used twice; an asset never changes, though a
+//! mesh may give its place to another ([`Assets::replace_mesh`]); what
 //! [`load`] puts into a world is finite and in range, whatever the file was.
 
 mod assets;
@@ -66,7 +67,7 @@ pub use ids::{StableId, StableIds, spawn};
 pub use lights::{DistantLight, PointLight, SpotLight};
 pub use material::{Material, Opacity, Principled, Surface, Volume};
 pub use mesh_structure::{
-    MAX_MESH_BINS, MAX_MESH_LEAF_SIZE, MeshAccel, MeshQuality, MeshSplit, MeshStructure,
+    MAX_MESH_BINS, MAX_MESH_LEAF_SIZE, MeshAccel, MeshLevels, MeshQuality, MeshSplit, MeshStructure,
 };
 pub use options::LoadOptions;
 pub use report::LoadReport;

@@ -46,6 +46,24 @@ pub enum MeshSplit {
     LargestAxis,
 }
 
+/// How many trees there are between a ray and the triangles of meshes.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default, Serialize, Deserialize)]
+pub enum MeshLevels {
+    /// A tree over each mesh, and one over the places where meshes stand: a mesh is held once, however often it is shown,
+    /// and moving an object leaves the trees of meshes alone.
+    #[default]
+    Two,
+    /// One tree over the triangles of all visible objects in world space: that of seed document 2, for comparison. Every
+    /// move and every other edit of an object concerns the whole tree, a mesh that is shown twice is held twice, and places
+    /// are rounded once for the whole scene: triangles much smaller than its extent suffer.
+    ///
+    /// All meshes are then one object to a ray: hits report the smallest stable id among the objects as their instance,
+    /// and as their primitive the triangle's number, counted through the objects by rising stable id. Materials, lights
+    /// and textures stay those of the objects. Smooth normals are interpolated after an object's transform instead of
+    /// before it, which makes a small difference where that scales unevenly.
+    One,
+}
+
 impl MeshAccel {
     /// Every way with the name that command lines and records have for it.
     pub const NAMES: &[(&str, Self)] =
@@ -68,7 +86,21 @@ impl MeshQuality {
     }
 }
 
-/// The structure over the triangles of each mesh, and how it is searched.
+impl MeshLevels {
+    /// Every number of levels with the name that command lines and records have for it.
+    pub const NAMES: &[(&str, Self)] = &[("two", Self::Two), ("one", Self::One)];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].0
+    }
+
+    fn is_two(&self) -> bool {
+        *self == Self::Two
+    }
+}
+
+/// The structure over the triangles of meshes, and how it is searched.
 #[derive(Resource, Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MeshStructure {
@@ -82,6 +114,9 @@ pub struct MeshStructure {
     pub bins: Option<u32>,
     /// Most triangles in a leaf, 1..=[`MAX_MESH_LEAF_SIZE`].
     pub leaf_size: u32,
+    /// Whether each mesh has its tree, or all have one.
+    #[serde(skip_serializing_if = "MeshLevels::is_two")]
+    pub levels: MeshLevels,
 }
 
 impl Default for MeshStructure {
@@ -92,6 +127,7 @@ impl Default for MeshStructure {
             split: MeshSplit::default(),
             bins: None,
             leaf_size: MAX_MESH_LEAF_SIZE,
+            levels: MeshLevels::default(),
         }
     }
 }
@@ -113,6 +149,9 @@ mod tests {
         }
         for (i, (name, quality)) in MeshQuality::NAMES.iter().enumerate() {
             assert_eq!((*quality as usize, quality.name()), (i, *name));
+        }
+        for (i, (name, levels)) in MeshLevels::NAMES.iter().enumerate() {
+            assert_eq!((*levels as usize, levels.name()), (i, *name));
         }
     }
 }

@@ -249,6 +249,10 @@ fn the_mesh_structure_is_saved_and_hashed_only_where_it_is_not_the_default() {
     let given = MeshStructure { accel: MeshAccel::BvhEscape, bins: Some(4), ..MeshStructure::default() };
     assert!(saved(given).contains("mesh_structure: ("));
     assert_eq!(*load_new(&path).resource::<MeshStructure>(), given);
+    assert!(!saved(given).contains("levels"), "older programs read what does not need it");
+    let one = MeshStructure { levels: MeshLevels::One, ..MeshStructure::default() };
+    assert!(saved(one).contains("levels: One"));
+    assert_eq!(*load_new(&path).resource::<MeshStructure>(), one);
     fs::write(&path, "(version: 1, mesh_structure: (quality: Best, split: LargestAxis, leaf_size: 2))")
         .unwrap();
     let expected = MeshStructure {

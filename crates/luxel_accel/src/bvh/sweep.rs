@@ -11,61 +11,71 @@ pub(super) const MAX_SWEEP: usize = 8;
 pub(super) fn best_cut(primitives: &mut [Primitive]) -> Option<(usize, f32)> {
     let all = Bounds::of(primitives);
     let unit = all.unit();
-    let mut sorted = [primitives[0]; MAX_SWEEP];
-    let sorted = &mut sorted[..primitives.len()];
-    let mut best: Option<(usize, f32)> = None;
-    let mut best_order = [primitives[0]; MAX_SWEEP];
+    let mut old = [primitives[0]; MAX_SWEEP];
+    let old = &mut old[..primitives.len()];
+    old.copy_from_slice(primitives);
+    let mut best: Option<(usize, f32, [u8; MAX_SWEEP])> = None;
     for axis in 0..3 {
-        sorted.copy_from_slice(primitives);
-        sort(sorted, axis);
-        if let Some((middle, cost)) = cheapest(sorted, unit)
-            && best.is_none_or(|(_, least)| cost < least)
+        let order = order(old, axis);
+        if let Some((middle, cost)) = cheapest(old, &order, unit)
+            && best.is_none_or(|(_, least, _)| cost < least)
         {
-            best = Some((middle, cost));
-            best_order[..sorted.len()].copy_from_slice(sorted);
+            best = Some((middle, cost, order));
         }
     }
-    let (middle, cost) = best?;
+    let (middle, cost, order) = best?;
     let tests = cost / all.half_area(unit);
-    (tests < primitives.len() as f32).then(|| {
-        primitives.copy_from_slice(&best_order[..primitives.len()]);
+    (tests < old.len() as f32).then(|| {
+        for (to, from) in primitives.iter_mut().zip(order) {
+            *to = old[usize::from(from)];
+        }
         (middle, tests)
     })
 }
 
-/// In the order of centres, equal ones by index.
-fn sort(primitives: &mut [Primitive], axis: usize) {
-    let key = |p: &Primitive| p.center()[axis];
-    for i in 1..primitives.len() {
-        let one = primitives[i];
-        let mut place = i;
-        while place > 0 {
-            let before = &primitives[place - 1];
-            let order = key(&one).total_cmp(&key(before)).then(one.index().cmp(&before.index()));
-            if order.is_gt() {
-                break;
-            }
-            primitives[place] = *before;
-            place -= 1;
-        }
-        primitives[place] = one;
+/// The order of the centres along an axis, equal ones by index. Each primitive's rank is counted: without branches, which
+/// could not be foreseen.
+fn order(primitives: &[Primitive], axis: usize) -> [u8; MAX_SWEEP] {
+    let mut keys = [0; MAX_SWEEP];
+    for (key, primitive) in keys.iter_mut().zip(primitives) {
+        *key = i64::from(ordinal(primitive.center()[axis])) << 32 | i64::from(primitive.index());
     }
+    let mut ranks = [0; MAX_SWEEP];
+    for (i, key) in keys[..primitives.len()].iter().enumerate() {
+        for (j, before) in keys[..i].iter().enumerate() {
+            let is_behind = usize::from(key > before);
+            ranks[i] += is_behind;
+            ranks[j] += 1 - is_behind;
+        }
+    }
+    let mut order = [0; MAX_SWEEP];
+    (0..).zip(&ranks[..primitives.len()]).for_each(|(i, &rank)| order[rank] = i);
+    order
+}
+
+/// A whole number for every number, in the order of [`f32::total_cmp`].
+#[inline]
+fn ordinal(x: f32) -> i32 {
+    let bits = x.to_bits() as i32;
+    bits ^ ((bits >> 31) as u32 >> 1) as i32
 }
 
 /// The cut of least cost in this order.
-fn cheapest(primitives: &[Primitive], unit: f32) -> Option<(usize, f32)> {
+fn cheapest(primitives: &[Primitive], order: &[u8; MAX_SWEEP], unit: f32) -> Option<(usize, f32)> {
     let count = primitives.len();
+    let bounds_of = |&place: &u8| primitives[usize::from(place)].bounds();
+    let order = &order[..count];
     let mut above = [0.0; MAX_SWEEP];
     let mut bounds = Bounds::EMPTY;
-    for i in (1..count).rev() {
-        bounds = bounds.with(&primitives[i].bounds());
-        above[i] = (count - i) as f32 * bounds.half_area(unit);
+    for (i, (place, above)) in order.iter().zip(&mut above).enumerate().skip(1).rev() {
+        bounds = bounds.with(&bounds_of(place));
+        *above = (count - i) as f32 * bounds.half_area(unit);
     }
     let mut below = Bounds::EMPTY;
     let mut best: Option<(usize, f32)> = None;
-    for i in 1..count {
-        below = below.with(&primitives[i - 1].bounds());
-        let cost = i as f32 * below.half_area(unit) + above[i];
+    for (i, (place, above)) in (1..count).zip(order.iter().zip(&above[1..])) {
+        below = below.with(&bounds_of(place));
+        let cost = i as f32 * below.half_area(unit) + above;
         if cost.is_finite() && best.is_none_or(|(_, least)| cost < least) {
             best = Some((i, cost));
         }

@@ -70,7 +70,7 @@ impl BuiltAttributes {
     }
 
     fn is_of(&self, mesh: &BuiltMesh) -> bool {
-        (self.triangles, self.built_in) == (mesh.triangles, mesh.built_in)
+        (self.triangles, self.built_in) == (mesh.tree.triangles, mesh.built_in)
     }
 }
 
@@ -181,12 +181,12 @@ fn build(
     if let Some(uv_set) = key.tangents {
         corners.find_tangents(mesh, uv_set, key.normals);
     }
-    let records = corners.records(mesh, &heaps.triangles.heap.as_slice()[built.triangles.range()]);
+    let records = corners.records(mesh, &heaps.triangles.heap.as_slice()[built.tree.triangles.range()]);
     let any = |on: bool, flag: u32| if on { flag } else { 0 };
     let colors = corners::of_each(&mesh.colors, mesh);
     Ok(BuiltAttributes {
         span: heaps.triangle_attributes.place(&records, revision)?,
-        triangles: built.triangles,
+        triangles: built.tree.triangles,
         built_in: built.built_in,
         flags: INSTANCE_ATTRIBUTES
             | any(corners.has_normals(), INSTANCE_NORMALS)

@@ -3,12 +3,13 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 use luxel_flat::{
-    Instance, KIND_MESH, KIND_SPHERES, MATERIAL_ALPHA_BLEND, MATERIAL_ALPHA_MASK, MATERIAL_EMISSIVE,
-    SphereRecord, TEXTURE_ROLE_EMISSION,
+    Instance, KIND_VOXELS, MATERIAL_ALPHA_BLEND, MATERIAL_ALPHA_MASK, MATERIAL_EMISSIVE, SphereRecord,
+    TEXTURE_ROLE_EMISSION,
 };
 
 use super::lamps::Lamp;
 use crate::cloud::Cloud;
+use crate::joined::Joined;
 use crate::store::Heaps;
 
 /// What becomes one light of the table, or one for each of its triangles.
@@ -18,26 +19,27 @@ pub(crate) enum Emitter {
     Lamp(Lamp),
     /// A sphere, in the cloud's coordinates, with its material slot.
     Sphere { center: Vec3, radius: f32, emission: Vec3, material: u32, stable_id: u32 },
-    /// All triangles of a placed mesh.
-    Mesh { instance: Instance, emission: Vec3 },
+    /// All triangles of a placed mesh that have a material slot.
+    Mesh { instance: Instance, material: u32, emission: Vec3 },
 }
 
 /// Every emitter with a surface: spheres, then meshes, by stable id.
-pub(super) fn find_emitters(heaps: &Heaps, cloud: &Cloud) -> Vec<Emitter> {
+pub(super) fn find_emitters(heaps: &Heaps, cloud: &Cloud, joined: &Joined) -> Vec<Emitter> {
     let spheres = cloud.structure().spheres().as_slice().iter();
     let mut spheres: Vec<&SphereRecord> =
         spheres.filter(|sphere| sphere.radius > 0.0 && emission(heaps, sphere.material).is_some()).collect();
     spheres.sort_unstable_by_key(|sphere| sphere.stable_id);
-    let live = || heaps.instances.heap.as_slice().iter().filter(|instance| instance.node_count > 0);
-    let mut meshes: Vec<&Instance> = live()
-        .filter(|instance| instance.kind == KIND_MESH && emission(heaps, instance.material_first).is_some())
-        .collect();
-    meshes.sort_unstable_by_key(|mesh| mesh.stable_id);
+    let mut meshes: Vec<(Instance, u32)> =
+        joined.surfaces(heaps).filter(|(_, material)| emission(heaps, *material).is_some()).collect();
+    // Pieces of the joined mesh are in order already, and stay.
+    meshes.sort_by_key(|(mesh, _)| mesh.stable_id);
 
     // An entity may be of several kinds; a slot says only once which light is its first.
     let mut owners: BTreeMap<u32, u32> = BTreeMap::new();
-    let placed =
-        live().filter(|instance| instance.kind != KIND_SPHERES).map(|instance| instance.material_first);
+    let volumes = heaps.instances.heap.as_slice().iter();
+    let volumes = volumes.filter(|instance| instance.node_count > 0 && instance.kind == KIND_VOXELS);
+    let placed = joined.surfaces(heaps).map(|(_, material)| material);
+    let placed = placed.chain(volumes.map(|volume| volume.material_first));
     for slot in spheres.iter().map(|sphere| sphere.material).chain(placed) {
         *owners.entry(slot).or_default() += 1;
     }
@@ -47,8 +49,9 @@ pub(super) fn find_emitters(heaps: &Heaps, cloud: &Cloud) -> Vec<Emitter> {
         let emission = emission(heaps, material)?;
         Some(Emitter::Sphere { center: Vec3::from(center), radius, emission, material, stable_id })
     });
-    let meshes = meshes.into_iter().filter(|mesh| is_alone(mesh.material_first)).filter_map(|mesh| {
-        Some(Emitter::Mesh { instance: *mesh, emission: emission(heaps, mesh.material_first)? })
+    let meshes = meshes.into_iter().filter(|(_, material)| is_alone(*material));
+    let meshes = meshes.filter_map(|(instance, material)| {
+        Some(Emitter::Mesh { instance, material, emission: emission(heaps, material)? })
     });
     spheres.chain(meshes).collect()
 }

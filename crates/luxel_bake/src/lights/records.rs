@@ -100,7 +100,7 @@ pub(super) fn sphere(center: Vec3, radius: f32, emission: Vec3, offset: DVec3) -
     (record, bounds)
 }
 
-/// The triangles of a placed mesh, in slot order.
+/// Triangles of a placed mesh, in their order.
 pub(super) fn triangles(
     instance: &Instance,
     emission: Vec3,

@@ -109,6 +109,7 @@ fn copy_of(world: &mut World) -> World {
     copy.insert_resource(*world.resource::<luxel_scene::Environment>());
     copy.insert_resource(*world.resource::<luxel_scene::RenderSettings>());
     copy.insert_resource(*world.resource::<luxel_scene::SphereCloud>());
+    copy.insert_resource(*world.resource::<luxel_scene::MeshStructure>());
     copy.insert_resource(*world.resource::<luxel_bake::TextureBudget>());
     let entities: Vec<Entity> =
         world.query_filtered::<Entity, With<luxel_scene::StableId>>().iter(world).collect();

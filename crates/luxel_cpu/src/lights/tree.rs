@@ -106,24 +106,37 @@ fn importance<R: Real>(node: &LightNode, receiver: &Receiver<R>) -> Importance<R
         return Importance { strength: power, square: square.max(radius_square * R::from_f64(LEAST_SQUARE)) };
     }
     let wi = to_center * (R::ONE / square.sqrt());
-    // The cone under which the bounding sphere is seen.
-    let cos_b = (R::ONE - radius_square / square).max(R::ZERO).sqrt();
+    // The cone under which the bounding sphere is seen. Of far lights its cosine no longer tells the sine.
+    let sine_square = radius_square / square;
+    let cone = Angle { cos: (R::ONE - sine_square).max(R::ZERO).sqrt(), sin: sine_square.sqrt() };
     let cos_w = -wi.dot(R::Vec3::from_array(node.axis));
     let cos_w = if node.two_sided == 1 { cos_w.abs() } else { cos_w };
-    let cos_x = cos_of_difference(cos_w, R::from_f32(node.cos_normals));
-    let cos_leaving = cos_of_difference(cos_x, cos_b);
+    let cos_x = cos_of_difference(cos_w, Angle::of(R::from_f32(node.cos_normals)));
+    let cos_leaving = cos_of_difference(cos_x, cone);
     let is_lit = cos_leaving > R::from_f32(node.cos_emission);
-    let cos_arriving = cos_of_difference(wi.dot(receiver.normal).abs(), cos_b);
+    let cos_arriving = cos_of_difference(wi.dot(receiver.normal).abs(), cone);
     let least = R::from_f32(LEAST_LIGHT_COSINE);
     let leaving = if is_lit { cos_leaving.max(least) } else { least };
     Importance { strength: power * leaving * cos_arriving.max(least), square }
 }
 
-/// Cosine of `max(0, a − b)` for two angles in `[0, π]` given by their cosines.
-fn cos_of_difference<R: Real>(cos_a: R, cos_b: R) -> R {
-    if cos_a > cos_b {
+/// An angle in `[0, π]`.
+#[derive(Clone, Copy)]
+struct Angle<R> {
+    cos: R,
+    sin: R,
+}
+
+impl<R: Real> Angle<R> {
+    fn of(cos: R) -> Self {
+        Self { cos, sin: (R::ONE - cos * cos).max(R::ZERO).sqrt() }
+    }
+}
+
+/// Cosine of `max(0, a − b)`; `a` is given by its cosine.
+fn cos_of_difference<R: Real>(cos_a: R, b: Angle<R>) -> R {
+    if cos_a > b.cos {
         return R::ONE;
     }
-    let sin = |cos: R| (R::ONE - cos * cos).max(R::ZERO).sqrt();
-    cos_a * cos_b + sin(cos_a) * sin(cos_b)
+    cos_a * b.cos + Angle::of(cos_a).sin * b.sin
 }

@@ -13,6 +13,11 @@ fn f(record: &MaterialRecord, wo: DVec3, wi: DVec3, front: bool) -> DVec3 {
     evaluate::<f64>(record, &geometry, wi).f_cos / wi.z.abs()
 }
 
+/// Pairs of directions for each closure and roughness.
+fn pairs() -> u32 {
+    if std::env::var("LUXEL_SOAK").is_ok_and(|soak| soak == "1") { 250_000 } else { 5_000 }
+}
+
 #[test]
 fn every_closure_is_reciprocal() {
     let mut numbers = Numbers::new(11);
@@ -20,7 +25,7 @@ fn every_closure_is_reciprocal() {
     for roughness in [0.04, 0.2, 0.5, 1.0] {
         for (name, record) in lossless(roughness).into_iter().chain(layered(roughness)) {
             let is_thin = record.flags & luxel_flat::MATERIAL_THIN != 0;
-            for _ in 0..500 {
+            for _ in 0..pairs() {
                 let [a, b] = [numbers.direction(), numbers.direction()];
                 let (there, back) = (f(&record, a, b, true), f(&record, b, a, true));
                 let crosses = a.z * b.z < 0.0 && !is_thin;

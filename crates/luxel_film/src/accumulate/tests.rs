@@ -1,4 +1,5 @@
-//! L16 (millions of samples), L17 (counts), L18 (what is not a number), each with a control that must fail.
+//! L16 (millions of samples), L17 (counts), L18 (what is not a number), each with a control that must fail; L20: no bright
+//! sample is clamped.
 use luxel_geom::rng::uniform4;
 use proptest::prelude::*;
 

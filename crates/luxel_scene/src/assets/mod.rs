@@ -1,7 +1,7 @@
 //! What entities share: triangle meshes, voxel volumes and images, each with its origin.
 //!
-//! An asset never changes: an edited one gets a new id. So an [`AssetId`] is a key that a cache can
-//! trust, and [`Assets`] is cheap to clone.
+//! An asset never changes: an edited one is another one, under a new id or, a mesh that deforms, in the place of the old
+//! one. So an `Arc` of an asset is a key that a cache can trust, and [`Assets`] is cheap to clone.
 
 mod image;
 mod mesh;
@@ -87,6 +87,15 @@ impl Assets {
     /// All volumes by rising id.
     pub fn volumes(&self) -> impl ExactSizeIterator<Item = (AssetId, &Arc<VolumeAsset>)> {
         self.volumes.iter().map(|(&id, volume)| (id, volume))
+    }
+
+    /// Puts another mesh in the place of one: all that show the old one show the new one from now on. Returns the old one;
+    /// without a mesh of that id nothing happens.
+    ///
+    /// If the triangles are the same ones (indices and ids) and only what their corners carry differs, their tree can be
+    /// refitted instead of built. A scene file holds the new mesh's `source`: places that no source gives are not saved.
+    pub fn replace_mesh(&mut self, id: AssetId, mesh: MeshAsset) -> Option<Arc<MeshAsset>> {
+        Some(std::mem::replace(self.meshes.get_mut(&id)?, Arc::new(mesh)))
     }
 
     /// Removes a mesh; its id stays dead.

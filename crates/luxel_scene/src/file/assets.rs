@@ -95,13 +95,11 @@ fn resolve_volume(scene: &Path, place: &str, source: &VolumeSource) -> Result<Vo
 }
 
 fn resolve_image(scene: &Path, place: &str, source: &ImageSource) -> Result<ImageSource, SceneError> {
-    Ok(match source {
-        ImageSource::File(path) => ImageSource::File(resolve(scene, place, path)?),
-        ImageSource::ModelImage(path, number) => {
-            ImageSource::ModelImage(resolve(scene, place, path)?, *number)
-        }
-        recipe => recipe.clone(),
-    })
+    let mut source = source.clone();
+    for path in source.paths_mut() {
+        *path = resolve(scene, place, path)?;
+    }
+    Ok(source)
 }
 
 /// A path of the scene file as an absolute one. Folders beside the scene's are fine, for a scene is

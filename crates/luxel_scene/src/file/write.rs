@@ -8,7 +8,7 @@ use bevy_ecs::prelude::World;
 use ron::ser::PrettyConfig;
 use tempfile::NamedTempFile;
 
-use crate::assets::{ImageSource, MeshSource, VolumeSource};
+use crate::assets::{MeshSource, VolumeSource};
 use crate::error::SceneError;
 
 use super::check::Flaw;
@@ -89,7 +89,7 @@ fn make_paths_relative(path: &Path, folder: &Path, file: &mut SceneFile) -> Resu
         }
     }
     for (id, source) in &mut file.images {
-        if let ImageSource::File(asset) | ImageSource::ModelImage(asset, _) = source {
+        for asset in source.paths_mut() {
             fix(format!("image {}", id.0), asset)?;
         }
     }

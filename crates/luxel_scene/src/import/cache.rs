@@ -9,7 +9,7 @@ use crate::report::LoadReport;
 
 use super::image::{checker, read_image};
 use super::ply::PlyFile;
-use super::{GltfFile, ObjFile, file_name};
+use super::{GltfFile, ObjFile, derived, file_name};
 
 /// Model files by their absolute paths.
 #[derive(Debug, Default)]
@@ -70,6 +70,17 @@ impl Models {
             ImageSource::File(path) => {
                 let name = file_name(path);
                 read_image(path)?.into_asset(source, &name)
+            }
+            ImageSource::Masked { color, mask } => {
+                let colors = color.as_deref().map(read_image).transpose()?;
+                let made = derived::masked(colors, read_image(mask)?);
+                let name = file_name(mask);
+                made.map_err(|reason| SceneError::unusable(mask, reason))?.into_asset(source, &name)
+            }
+            ImageSource::Bumps(path) => {
+                let made = derived::normals(read_image(path)?);
+                let name = file_name(path);
+                made.map_err(|reason| SceneError::unusable(path, reason))?.into_asset(source, &name)
             }
             ImageSource::ModelImage(path, number) => self.gltf(path)?.image_asset(*number)?,
             ImageSource::Checker { squares, a, b } => checker(*squares, *a, *b).into_asset(source, "checker"),

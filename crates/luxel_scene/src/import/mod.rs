@@ -8,6 +8,7 @@
 mod assemble;
 mod cache;
 mod confined;
+mod derived;
 mod frame;
 mod gltf;
 mod guard;

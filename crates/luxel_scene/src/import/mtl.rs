@@ -94,7 +94,7 @@ fn clean_mtl(path: &Path, text: &str, warnings: &mut Vec<String>) -> String {
             Some("newmtl") if words.next().is_some() => 0,
             Some("Kd" | "Ks" | "Ke") => 3,
             Some("Ns" | "Ni" | "d" | "illum" | "Pr" | "Pm" | "Pc" | "Pcr") => 1,
-            Some(keyword) if KEYWORDS.contains(&keyword) || keyword == "map_d" => {
+            Some(keyword) if KEYWORDS.contains(&keyword) => {
                 kept.push_str(&renamed(keyword));
                 kept.push_str(&line[keyword.len()..]);
                 kept.push('\n');

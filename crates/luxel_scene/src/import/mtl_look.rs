@@ -16,12 +16,14 @@ pub(crate) struct MtlLook {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Role {
     Color,
+    /// Opacity from a picture that is not the colour's.
+    Mask,
     Emission,
     SpecularColor,
     /// Roughness and, in the same picture, metal.
     MetallicRoughness,
     Normal,
-    /// A normal map if it is coloured; heights if it is grey, which are not understood.
+    /// A normal map if it is coloured, heights if it is grey.
     Bump,
 }
 
@@ -82,6 +84,11 @@ impl Map {
         (!map.file.is_empty()).then_some(map)
     }
 
+    /// Whether both lie on the surface alike.
+    pub(super) fn lies_like(&self, other: &Self) -> bool {
+        (self.offset, self.scale, self.clamp) == (other.offset, other.scale, other.clamp)
+    }
+
     /// The texture on an image. In these files v runs upwards, here downwards.
     pub(super) fn texture(&self, image: crate::AssetId) -> TextureRef {
         let wrap = if self.clamp { Wrap::Clamp } else { Wrap::Repeat };
@@ -129,7 +136,9 @@ fn finite(text: &str) -> Option<f32> {
 pub(super) fn look(from: &tobj::Material) -> MtlLook {
     let maps = maps(from);
     let has = |role| maps.iter().any(|(found, _)| *found == role);
-    let transparency = from.dissolve.filter(|_| !has_cutout(from));
+    // Where a picture says opacity, a number beside it, often 0, is no factor.
+    let has_cutout = has(Role::Mask);
+    let transparency = from.dissolve.filter(|_| !has_cutout);
     let surface = match from.illumination_model {
         Some(4 | 6 | 7 | 9) => glass(from),
         _ if transparency.is_some_and(|opacity| opacity < 0.5) => glass(from),
@@ -143,7 +152,7 @@ pub(super) fn look(from: &tobj::Material) -> MtlLook {
     };
     let is_glass = matches!(surface, Surface::Dielectric { .. });
     let opacity = match transparency {
-        _ if has_cutout(from) => Opacity::Mask { alpha: 1.0, cutoff: 0.5 },
+        _ if has_cutout => Opacity::Mask { alpha: 1.0, cutoff: 0.5 },
         Some(alpha) if alpha < 1.0 && !is_glass => Opacity::Blend { alpha: alpha.clamp(0.0, 1.0) },
         _ => Opacity::Opaque,
     };
@@ -231,9 +240,10 @@ fn reflecting_ior(from: &tobj::Material) -> f32 {
 
 /// The textures that are understood; see [`KEYWORDS`].
 fn maps(from: &tobj::Material) -> Vec<(Role, Map)> {
-    let named = |keyword: &str| Map::parse(from.unknown_param.get(&renamed(keyword))?);
+    let named = |keyword: &str| map(from, keyword);
     let roles = [
         (Role::Color, ["map_Kd"].as_slice()),
+        (Role::Mask, &["map_d"]),
         (Role::Emission, &["map_Ke"]),
         (Role::SpecularColor, &["map_Ks"]),
         (Role::MetallicRoughness, &["map_Pr", "map_RMA", "map_ORM"]),
@@ -246,16 +256,14 @@ fn maps(from: &tobj::Material) -> Vec<(Role, Map)> {
     found.collect()
 }
 
-/// Whether opacity comes from the alpha channel of the picture that the colour comes from.
-fn has_cutout(from: &tobj::Material) -> bool {
-    let file = |keyword: &str| Some(Map::parse(from.unknown_param.get(&renamed(keyword))?)?.file);
-    file("map_d").is_some_and(|mask| file("map_Kd") == Some(mask))
+fn map(from: &tobj::Material, keyword: &str) -> Option<Map> {
+    Map::parse(from.unknown_param.get(&renamed(keyword))?)
 }
 
 /// The lines that name textures.
-pub(super) const KEYWORDS: [&str; 11] = [
-    "map_Kd", "map_Ke", "map_Ks", "map_Pr", "map_RMA", "map_ORM", "norm", "map_Kn", "map_Bump", "map_bump",
-    "bump",
+pub(super) const KEYWORDS: [&str; 12] = [
+    "map_Kd", "map_d", "map_Ke", "map_Ks", "map_Pr", "map_RMA", "map_ORM", "norm", "map_Kn", "map_Bump",
+    "map_bump", "bump",
 ];
 
 /// A keyword as one that `tobj`, which does not know the options of such a line, hands on as it is.

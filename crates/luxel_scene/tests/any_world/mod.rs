@@ -271,13 +271,15 @@ pub(crate) fn any_mesh_structure() -> impl Strategy<Value = MeshStructure> {
     let accel = (0..MeshAccel::NAMES.len()).prop_map(|i| MeshAccel::NAMES[i].1);
     let quality = (0..MeshQuality::NAMES.len()).prop_map(|i| MeshQuality::NAMES[i].1);
     let split = prop_oneof![Just(MeshSplit::Sah), Just(MeshSplit::LargestAxis)];
-    let given = (accel, quality, split, proptest::option::of(2u32..=64), 1u32..=8);
-    let given = given.prop_map(|(accel, quality, split, bins, leaf_size)| MeshStructure {
+    let levels = (0..MeshLevels::NAMES.len()).prop_map(|i| MeshLevels::NAMES[i].1);
+    let given = (accel, quality, split, proptest::option::of(2u32..=64), 1u32..=8, levels);
+    let given = given.prop_map(|(accel, quality, split, bins, leaf_size, levels)| MeshStructure {
         accel,
         quality,
         split,
         bins,
         leaf_size,
+        levels,
     });
     prop_oneof![1 => Just(MeshStructure::default()), 4 => given]
 }

@@ -1,5 +1,5 @@
 //! What is varied between the runs of a group.
-use luxel_engine::{MeshAccel, MeshQuality, MeshStructure};
+use luxel_engine::{MeshAccel, MeshLevels, MeshQuality, MeshStructure};
 use luxel_scene::MeshSplit;
 
 use super::select::{LARGEST_AXIS, SAH};
@@ -55,6 +55,10 @@ impl Configuration {
 
     pub(crate) fn split(self, split: MeshSplit) -> Self {
         Self { mesh: MeshStructure { split, ..self.mesh }, ..self }
+    }
+
+    pub(crate) fn levels(self, levels: MeshLevels) -> Self {
+        Self { mesh: MeshStructure { levels, ..self.mesh }, ..self }
     }
 
     pub(crate) fn shown(self, spp: u32) -> Self {

@@ -24,50 +24,15 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
-use std::path::Path;
-
 pub use page::page;
 pub use plan::Plan;
 pub use record::{FORMAT, Run, STUDY, Sweep};
 pub use scene::BunnyModel;
 
-use crate::StudyError;
-use crate::kit::{self, list};
-use crate::octree::{Origin, StudyObserver};
+use crate::kit::doors::doors;
 pub(crate) use study::BvhStudy;
 
 /// The page.
 pub const PAGE: &str = "bvh.html";
 
-/// What a study left.
-pub type Studied = kit::Studied<Run>;
-
-/// Measures a plan and writes runs, table and page to a folder, which is made if it is missing.
-///
-/// # Errors
-/// When the folder cannot be written, holds files of something else or is being written to, or when no backend of the
-/// plan works. What was measured before a backend failed stays in `runs.jsonl.part`.
-pub fn run(
-    plan: &Plan,
-    origin: &Origin,
-    out: &Path,
-    observer: &mut StudyObserver<'_>,
-) -> Result<Studied, StudyError> {
-    kit::run::<BvhStudy>(&plan.0, origin, out, observer)
-}
-
-/// Makes table and page again from a list of runs.
-///
-/// # Errors
-/// When the list cannot be read or has a damaged line, or the folder cannot be written or has files of something else.
-pub fn redo(list: &Path, out: &Path) -> Result<Studied, StudyError> {
-    kit::redo::<BvhStudy>(list, out)
-}
-
-/// Reads the records of an earlier study.
-///
-/// # Errors
-/// [`StudyError::Io`], or [`StudyError::Record`] with the first line that is no record of this study.
-pub fn read_runs(path: &Path) -> Result<Vec<Run>, StudyError> {
-    list::read_runs(path)
-}
+doors!(BvhStudy);

@@ -1,5 +1,5 @@
 //! What the BVH study measures.
-use luxel_engine::{BackendChoice, MeshAccel, MeshQuality, has_hardware_gpu};
+use luxel_engine::{BackendChoice, MeshAccel, MeshLevels, MeshQuality, has_hardware_gpu};
 use luxel_scene::{MeshSplit, Surface};
 
 use super::configuration::Configuration;
@@ -326,14 +326,12 @@ impl On<'_> {
     }
 
     fn levels(&self) -> Group {
-        let of = |is_one_mesh, split| {
-            self.measured().split(split).staged(Staging { is_one_mesh, ..Staging::default() })
-        };
+        let of = |levels, split| self.measured().split(split).levels(levels);
         let all = vec![
-            of(false, MeshSplit::Sah),
-            of(true, MeshSplit::Sah),
-            of(false, MeshSplit::LargestAxis),
-            of(true, MeshSplit::LargestAxis),
+            of(MeshLevels::Two, MeshSplit::Sah),
+            of(MeshLevels::One, MeshSplit::Sah),
+            of(MeshLevels::Two, MeshSplit::LargestAxis),
+            of(MeshLevels::One, MeshSplit::LargestAxis),
         ];
         self.group(Sweep::Levels, Scene::OneOrTwoLevels(self.model.clone()), all)
     }

@@ -134,7 +134,7 @@ pub(crate) fn world(scene: &Scene) -> Result<World, StudyError> {
     }
     mark_mirror_floor(&mut world);
     if let Scene::OneOrTwoLevels(_) = scene {
-        levels::make_both(&mut world);
+        levels::make_grey(&mut world);
     }
     luxel_scene::spawn(&mut world, (Transform::default(), Camera::pinhole(0.6), Moved));
     Ok(world)
@@ -208,7 +208,7 @@ fn mark_mirror_floor(world: &mut World) {
 
 #[cfg(test)]
 mod tests {
-    use luxel_scene::{ActiveCamera, Visibility};
+    use luxel_scene::ActiveCamera;
 
     use super::super::staging::{Staging, View, stage};
     use super::*;
@@ -258,20 +258,13 @@ mod tests {
     }
 
     #[test]
-    fn one_mesh_has_the_triangles_of_all_objects() {
+    fn the_room_of_the_levels_is_of_meshes_alike() {
         let mut world = world(&Scene::OneOrTwoLevels(BunnyModel::Rabbit)).unwrap();
-        let count = |world: &mut World, is_one_mesh| {
-            stage(world, &Staging { is_one_mesh, ..Staging::default() });
-            let mut shown = world.query::<(&MeshInstance, &Visibility)>();
-            let shown: Vec<AssetId> =
-                shown.iter(world).filter(|(_, v)| v.0).map(|(instance, _)| instance.mesh).collect();
-            let assets = world.resource::<Assets>();
-            let triangles =
-                shown.iter().map(|id| assets.mesh(*id).unwrap().mesh.triangles.len()).sum::<usize>();
-            (shown.len(), triangles)
-        };
-        let (two, one) = (count(&mut world, false), count(&mut world, true));
-        assert_eq!((one.0, one.1), (1, two.1));
-        assert!(two.0 > 5);
+        let mut meshes = world.query::<(&MeshInstance, &Material)>();
+        let grey = Material::lambert(glam::Vec3::splat(0.6));
+        assert!(
+            meshes.iter(&world).count() > 5 && meshes.iter(&world).all(|(_, material)| *material == grey)
+        );
+        assert_eq!(world.query::<&luxel_scene::Sphere>().iter(&world).count(), 0);
     }
 }

@@ -1,9 +1,8 @@
-//! What a configuration changes in the world of its scene: where the camera is, how surfaces look, which objects show.
+//! What a configuration changes in the world of its scene: where the camera is, how surfaces look.
 use bevy_ecs::prelude::*;
 use glam::DVec3;
-use luxel_scene::{ActiveCamera, Camera, Material, SmoothNormals, Surface, Transform, Visibility};
+use luxel_scene::{ActiveCamera, Camera, Material, SmoothNormals, Surface, Transform};
 
-use super::levels::Level;
 use super::scene::{Bunny, MirrorFloor};
 
 /// Edges that are sharper than this stay edges when normals are interpolated, radians.
@@ -19,8 +18,6 @@ pub(crate) struct Staging {
     pub(crate) surface: Option<Surface>,
     /// Part of the floor that is mirror, where it is semi-specular.
     pub(crate) smoothness: Option<f32>,
-    /// All triangles in one mesh, where the scene has both.
-    pub(crate) is_one_mesh: bool,
 }
 
 /// Where the camera is.
@@ -77,10 +74,6 @@ pub(crate) fn stage(world: &mut World, staging: &Staging) {
     }
     if let Some(smoothness) = staging.smoothness {
         set_smoothness(world, smoothness);
-    }
-    let mut levels = world.query::<(&Level, &mut Visibility)>();
-    for (level, mut visibility) in levels.iter_mut(world) {
-        visibility.set_if_neq(Visibility((*level == Level::One) == staging.is_one_mesh));
     }
 }
 

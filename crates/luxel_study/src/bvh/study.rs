@@ -7,13 +7,14 @@ use luxel_engine::{Counter, FrameSettings, FrameStage, MeshTreeFacts, SphereClou
 use super::configuration::{Configuration, split_name};
 use super::page::{TITLE, page};
 use super::plan::{BOUNCES, Group};
-use super::record::{FORMAT, Run, STUDY, Sweep};
+use super::record::{OwnFields, Run, Sweep};
 use super::scene::{self, Scene};
 use super::staging;
 use crate::StudyError;
 use crate::kit::measured::{Look, Measured, rounded};
 use crate::kit::picture::png;
 use crate::kit::plan::SEED;
+use crate::kit::record::Shape;
 use crate::kit::study::{Made, Study};
 
 /// Builds are repeated up to this many times, and no longer than this.
@@ -76,9 +77,9 @@ impl Study for BvhStudy {
         format!("{}, {variant}", group.scene.name())
     }
 
-    fn baked(stage: &mut FrameStage, measured: &mut Measured<Facts>) -> Result<(), StudyError> {
+    fn baked(stage: &mut FrameStage, secs: f64, measured: &mut Measured<Facts>) -> Result<(), StudyError> {
         measured.facts.trees = stage.mesh_trees();
-        measured.facts.build_secs = build_secs(stage)?;
+        measured.facts.build_secs = build_secs(stage, secs)?;
         measured.facts.hardware_gpu = stage.is_hardware_gpu();
         Ok(())
     }
@@ -116,54 +117,27 @@ impl Study for BvhStudy {
     }
 
     fn record(made: &Made<'_, Self>, configuration: &Configuration, measured: &Measured<Facts>) -> Run {
-        let Made { plan, origin, facts: backend, group } = *made;
-        let Configuration { mesh, staging, variant, size: (width, height), spp, bounces, shown_spp } =
-            configuration;
-        let facts = &measured.facts;
-        let timing = measured.timing();
-        Run {
-            study: STUDY.to_owned(),
-            format: FORMAT,
-            sweep: group.sweep,
-            quick: plan.quick,
-            planned_runs: plan.run_count() as u32,
-            date: origin.date.clone(),
-            version: origin.version.clone(),
-            commit: origin.commit.clone(),
-            machine: origin.machine.clone(),
-            backend: backend.backend.name().to_owned(),
-            device: backend.device.clone(),
-            driver: backend.driver.trim().to_owned(),
+        let Configuration { mesh, staging, variant, size, spp, bounces, shown_spp } = configuration;
+        let (scene, facts) = (&made.group.scene, &measured.facts);
+        let shape = Shape { structure: mesh.accel.name(), size: *size, spp: *spp, bounces: *bounces };
+        let own = OwnFields {
             hardware_gpu: facts.hardware_gpu,
-            scene: group.scene.name().to_owned(),
-            model: group.scene.model(),
+            scene: scene.name().to_owned(),
+            model: scene.model(),
             variant: (*variant).to_owned(),
-            structure: mesh.accel.name().to_owned(),
             preset: mesh.quality.name().to_owned(),
             split: split_name(mesh.split).to_owned(),
             bins: mesh.bins.unwrap_or_default(),
             leaf_size: mesh.leaf_size,
-            levels: if staging.is_one_mesh { "one" } else { "two" }.to_owned(),
+            levels: mesh.levels.name().to_owned(),
             view: staging.view.name().to_owned(),
             triangles: u32::try_from(facts.trees.triangles).unwrap_or(u32::MAX),
-            width: *width,
-            height: *height,
-            spp: *spp,
-            bounces: *bounces,
             picture_spp: *shown_spp,
             build_secs: rounded(facts.build_secs),
             sah_cost: rounded(facts.trees.sah_cost),
             bytes: facts.trees.bytes,
             nodes: u32::try_from(facts.trees.nodes).unwrap_or(u32::MAX),
             depth: facts.trees.depth,
-            frames: timing.frames,
-            outliers: timing.outliers,
-            frame_ms: timing.frame_ms,
-            frame_ms_p25: timing.frame_ms_p25,
-            frame_ms_p75: timing.frame_ms_p75,
-            fps: timing.fps,
-            rays: timing.rays,
-            rays_per_sec: timing.rays_per_sec,
             nodes_per_ray: measured.per_ray(Counter::BvhNodes),
             tlas_nodes_per_ray: measured.per_ray(Counter::TlasNodes),
             tests_per_ray: measured.per_ray(Counter::TriangleTests),
@@ -174,10 +148,8 @@ impl Study for BvhStudy {
             shadow_rays: measured.per_frame(Counter::ShadowRays),
             lost_pixels: facts.lost_pixels,
             dark: facts.dark.map(rounded),
-            noise: facts.look.as_ref().map(|look| rounded(look.noise)),
-            frames_ms: timing.frames_ms,
-            picture_png: facts.look.as_ref().map(|look| look.png.clone()),
-        }
+        };
+        Run::of(made, shape, measured.timing(), facts.look.as_ref(), own)
     }
 
     fn page(runs: &[Run]) -> Result<String, StudyError> {
@@ -192,10 +164,12 @@ fn differing(a: &[[u32; 2]], b: &[[u32; 2]]) -> u32 {
 }
 
 /// The median of some builds, for a single short one tells little.
-fn build_secs(stage: &FrameStage) -> Result<f64, StudyError> {
+fn build_secs(stage: &FrameStage, secs: f64) -> Result<f64, StudyError> {
     let start = Instant::now();
     let mut builds = Vec::new();
-    while builds.len() < MOST_BUILDS && (builds.is_empty() || start.elapsed().as_secs_f64() < BUILD_SECS) {
+    while builds.len() < MOST_BUILDS
+        && (builds.is_empty() || start.elapsed().as_secs_f64() < secs.min(BUILD_SECS))
+    {
         builds.push(stage.mesh_build_secs()?);
     }
     Ok(crate::kit::stats::median(&builds).unwrap_or_default())

@@ -93,6 +93,7 @@ fn check_numbers<R: Record>(run: &R) -> Result<(), String> {
         ("fps", common.fps, Allowed::Positive),
         ("rays", common.rays, Allowed::NotNegative),
         ("rays_per_sec", common.rays_per_sec, Allowed::NotNegative),
+        ("noise", common.noise.unwrap_or_default(), Allowed::NotNegative),
     ];
     let frames = common.frames_ms.iter().map(|ms| ("frames_ms", *ms, Allowed::Positive));
     for (field, number, allowed) in shared.into_iter().chain(run.numbers()).chain(frames) {

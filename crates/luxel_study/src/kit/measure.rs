@@ -154,7 +154,7 @@ impl<S: Study> Work<'_, '_, S> {
         stage.edit(|world| S::configure(world, configuration));
         stage.set(&S::settings(configuration, SEED + self.turn))?;
         if measured.frame_ms.is_empty() {
-            S::baked(stage, measured)?;
+            S::baked(stage, group.secs_each, measured)?;
         }
         let secs = group.secs_each / f64::from(self.plan.rounds);
         stage.warm_up()?;

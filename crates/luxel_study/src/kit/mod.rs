@@ -6,6 +6,7 @@
 //! Invariants: nothing in a folder changes until something was measured; a list of runs that is there is kept; a
 //! study that is stopped leaves what it has; a list of runs is read back with every number checked.
 pub(crate) mod chart;
+pub(crate) mod doors;
 pub(crate) mod draw;
 pub(crate) mod figure;
 pub(crate) mod list;

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use super::list::read_runs;
-use super::record::Record;
+use super::record::{Record, Shared};
 use super::study::Study;
 use crate::StudyError;
 

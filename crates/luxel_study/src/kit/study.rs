@@ -45,11 +45,15 @@ pub(crate) trait Study: Sized {
     /// What is being measured, for the user.
     fn what(group: &Group<Self>, configuration: &Self::Configuration) -> String;
 
-    /// Takes what a configuration has as soon as it is baked for the first time.
+    /// Takes what a configuration has as soon as it is baked for the first time; what is timed may take so many seconds.
     ///
     /// # Errors
     /// When its structure cannot be built.
-    fn baked(stage: &mut FrameStage, measured: &mut Measured<Self::Facts>) -> Result<(), StudyError>;
+    fn baked(
+        stage: &mut FrameStage,
+        secs: f64,
+        measured: &mut Measured<Self::Facts>,
+    ) -> Result<(), StudyError>;
 
     /// Takes what is not a matter of time, after all turns; `first` is what was taken from the group's first
     /// configuration, and nothing for that one itself.

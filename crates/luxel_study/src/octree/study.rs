@@ -7,11 +7,12 @@ use luxel_engine::{Counter, FrameSettings, FrameStage, MeshStructure, SphereAcce
 use super::field::{self, SphereField};
 use super::page::{TITLE, page};
 use super::plan::{Configuration, Group};
-use super::record::{FORMAT, Run, STUDY, Sweep};
+use super::record::{OwnFields, Run, Sweep};
 use crate::StudyError;
 use crate::kit::measured::{Look, Measured, rounded};
 use crate::kit::picture::png;
 use crate::kit::plan::SEED;
+use crate::kit::record::Shape;
 use crate::kit::study::{Made, Study};
 
 /// Up to this many spheres, first hits are compared with those of no structure at all, beyond with those of our
@@ -69,9 +70,9 @@ impl Study for OctreeStudy {
         format!("{} spheres, {}", group.scene.count(), configuration.accel.name())
     }
 
-    fn baked(stage: &mut FrameStage, measured: &mut Measured<Facts>) -> Result<(), StudyError> {
+    fn baked(stage: &mut FrameStage, secs: f64, measured: &mut Measured<Facts>) -> Result<(), StudyError> {
         measured.facts.structure = stage.structure();
-        measured.facts.build_secs = build_secs(stage)?;
+        measured.facts.build_secs = build_secs(stage, secs)?;
         Ok(())
     }
 
@@ -103,47 +104,20 @@ impl Study for OctreeStudy {
     }
 
     fn record(made: &Made<'_, Self>, configuration: &Configuration, measured: &Measured<Facts>) -> Run {
-        let Made { plan, origin, facts: backend, group } = *made;
-        let Configuration { accel, asked_depth, min_spheres, size: (width, height), quality } =
-            *configuration;
-        let facts = &measured.facts;
-        let timing = measured.timing();
-        Run {
-            study: STUDY.to_owned(),
-            format: FORMAT,
-            sweep: group.sweep,
-            quick: plan.quick,
-            planned_runs: plan.run_count() as u32,
-            date: origin.date.clone(),
-            version: origin.version.clone(),
-            commit: origin.commit.clone(),
-            machine: origin.machine.clone(),
-            backend: backend.backend.name().to_owned(),
-            device: backend.device.clone(),
-            driver: backend.driver.trim().to_owned(),
-            structure: accel.name().to_owned(),
-            spheres: group.scene.count(),
+        let Configuration { accel, asked_depth, min_spheres, size, quality } = *configuration;
+        let (row, facts) = (quality.row(), &measured.facts);
+        let shape = Shape { structure: accel.name(), size, spp: row.spp, bounces: row.max_depth };
+        let own = OwnFields {
+            spheres: made.group.scene.count(),
             asked_depth,
             max_depth: configuration.cloud().max_depth,
             min_spheres,
-            width,
-            height,
-            quality: quality.row().name.to_owned(),
-            spp: quality.row().spp,
-            bounces: quality.row().max_depth,
+            quality: row.name.to_owned(),
             build_secs: rounded(facts.build_secs),
             bytes: facts.structure.bytes,
             nodes: facts.structure.nodes,
             depth: facts.structure.depth,
             cut_off: facts.structure.cut_off,
-            frames: timing.frames,
-            outliers: timing.outliers,
-            frame_ms: timing.frame_ms,
-            frame_ms_p25: timing.frame_ms_p25,
-            frame_ms_p75: timing.frame_ms_p75,
-            fps: timing.fps,
-            rays: timing.rays,
-            rays_per_sec: timing.rays_per_sec,
             nodes_per_ray: measured.per_ray(Counter::SphereNodes),
             tests_per_ray: measured.per_ray(Counter::SphereTests),
             lambert_bounces: measured.per_frame(Counter::LambertBounces),
@@ -151,10 +125,8 @@ impl Study for OctreeStudy {
             dielectric_bounces: measured.per_frame(Counter::DielectricBounces),
             wrong_pixels: facts.wrong_pixels.map(rounded),
             wrong_rays: facts.wrong_rays.map(rounded),
-            noise: facts.look.as_ref().map(|look| rounded(look.noise)),
-            frames_ms: timing.frames_ms,
-            picture_png: facts.look.as_ref().map(|look| look.png.clone()),
-        }
+        };
+        Run::of(made, shape, measured.timing(), facts.look.as_ref(), own)
     }
 
     fn page(runs: &[Run]) -> Result<String, StudyError> {
@@ -192,10 +164,12 @@ fn differing(a: &[u32], b: &[u32]) -> f64 {
 }
 
 /// The median of some builds, for a single short one tells little.
-fn build_secs(stage: &FrameStage) -> Result<f64, StudyError> {
+fn build_secs(stage: &FrameStage, secs: f64) -> Result<f64, StudyError> {
     let start = Instant::now();
     let mut builds = Vec::new();
-    while builds.len() < MOST_BUILDS && (builds.is_empty() || start.elapsed().as_secs_f64() < BUILD_SECS) {
+    while builds.len() < MOST_BUILDS
+        && (builds.is_empty() || start.elapsed().as_secs_f64() < secs.min(BUILD_SECS))
+    {
         builds.push(stage.build_secs()?);
     }
     Ok(crate::kit::stats::median(&builds).unwrap_or_default())

@@ -16,7 +16,8 @@ use super::fresnel::{self, Dielectric};
 
 /// Index of the clear coat (`KHR_materials_clearcoat`).
 pub(super) const COAT_INDEX: f64 = 1.5;
-/// Least distance of a rough body's index from 1: nearer to it a refracted direction does not tell the microfacet.
+/// Least relative index of a rough body, or its greatest inverse: nearer to 1 a refracted direction does not tell the
+/// microfacet.
 const LEAST_INDEX: f64 = 1.001;
 /// Gauss and Legendre's points and weights on [0, 1].
 const GAUSS: [(f64, f64); 4] = [
@@ -126,7 +127,7 @@ impl<'a, R: Real> Layers<'a, R> {
 
     fn mirrored(&self, cos: R, loss: R) -> R::Vec3 {
         let eta = self.dielectric.eta;
-        let exact = if self.is_smooth || self.is_inside {
+        let exact = if self.is_smooth || eta < R::ONE {
             optics::fresnel_dielectric(cos, eta).reflectance * (R::ONE - loss)
         } else {
             lookup::coat_albedo(self.tables, cos, self.bsdf.roughness, eta)
@@ -166,7 +167,8 @@ impl<'a, R: Real> Layers<'a, R> {
 
     /// The cosine-weighted mean of [`Self::passing`].
     pub(super) fn passing_average(&self) -> R::Vec3 {
-        if self.coat > R::ZERO {
+        // The table of averages is for rays that come from the thinner side.
+        if self.coat > R::ZERO || self.dielectric.eta < R::ONE {
             return GAUSS.iter().fold(R::Vec3::splat(R::ZERO), |sum, (cos, weight)| {
                 let passing = self.passing(&self.albedos(R::from_f64(*cos)));
                 sum + passing * R::from_f64(2.0 * cos * weight)
@@ -211,8 +213,9 @@ impl<'a, R: Real> Layers<'a, R> {
 
     fn glass_returns(&self, returns: &mut Returns<R>) {
         let eta = self.dielectric.eta;
-        let outer = if self.is_inside { R::ONE / eta } else { eta };
-        let exact = lookup::coat_albedo_average(self.tables, R::ZERO, outer);
+        let is_denser_here = eta < R::ONE;
+        let from_thinner = if is_denser_here { R::ONE / eta } else { eta };
+        let exact = lookup::coat_albedo_average(self.tables, R::ZERO, from_thinner);
         // η and 1/η have one reflectance head-on, so the means on both sides are tinted alike.
         returns.through = R::Vec3::splat(R::ONE) - self.dielectric.mean(R::ONE, exact);
         if self.is_thin {
@@ -226,7 +229,7 @@ impl<'a, R: Real> Layers<'a, R> {
         // Reciprocity across the border asks for equal near · through · index² on both sides.
         let largest = returns.near.max(returns.far);
         let balance = if largest > R::ZERO { returns.far / largest } else { R::ZERO };
-        let spread = if self.is_inside { eta * eta } else { R::ONE };
+        let spread = if is_denser_here { eta * eta } else { R::ONE };
         returns.through = returns.through * (balance * spread);
         // No more comes back than a weaker or tinted reflection lets out.
         let tint = self.bsdf.specular_color.min(R::Vec3::splat(R::ONE));
@@ -256,5 +259,6 @@ fn index<R: Real>(bsdf: &Bsdf<R>, is_any_allowed: bool) -> R {
     if is_any_allowed || bsdf.transmission == R::ZERO {
         return bsdf.ior;
     }
-    bsdf.ior.max(R::from_f64(LEAST_INDEX))
+    let least = R::from_f64(LEAST_INDEX);
+    if bsdf.ior < R::ONE { bsdf.ior.min(R::ONE / least) } else { bsdf.ior.max(least) }
 }
