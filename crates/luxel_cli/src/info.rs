@@ -10,7 +10,11 @@ use crate::reply;
 
 /// Describes a scene.
 pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
-    let options = LoadOptions { scene: args.scene.clone(), environment: args.environment.clone() };
+    let options = LoadOptions {
+        scene: args.scene.clone(),
+        environment: args.environment.clone(),
+        ..LoadOptions::default()
+    };
     let mut engine = Engine::load_with(&args.file, &options)?;
     // Of the scene as it is in its file, whatever is asked for besides.
     let scene_hash = engine.scene_hash()?;

@@ -37,7 +37,8 @@ pub(crate) fn render(args: &RenderArgs) -> Result<ExitCode, CliError> {
     if args.output.is_some() {
         targets.check()?;
     }
-    let options = LoadOptions { scene: args.scene.clone(), environment: args.environment.clone() };
+    let options =
+        LoadOptions { scene: args.scene.clone(), environment: args.environment.clone(), size: args.size };
     run(&args.file, &options, job(args), &targets, &ignored(args, &targets.output), args.json)
 }
 
@@ -45,7 +46,7 @@ pub(crate) fn render(args: &RenderArgs) -> Result<ExitCode, CliError> {
 pub(crate) fn to_picture(scene: &Path, job: RenderJob, output: &Path) -> Result<ExitCode, CliError> {
     let output = output.to_owned();
     let targets = Targets { output, aovs: Vec::new(), view: View::PathTraced, precision: Precision::Half };
-    run(scene, &LoadOptions::default(), job, &targets, &[], false)
+    run(scene, &LoadOptions { size: job.size, ..LoadOptions::default() }, job, &targets, &[], false)
 }
 
 fn job(args: &RenderArgs) -> RenderJob {

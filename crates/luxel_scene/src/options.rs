@@ -10,4 +10,6 @@ pub struct LoadOptions {
     /// An HDR or EXR picture (or any image) that surrounds the scene in place of its own environment. A model
     /// then gets no sky and no lamp.
     pub environment: Option<PathBuf>,
+    /// Width and height, in pixels, of the picture that a model without a camera is framed for, in place of the default size.
+    pub size: Option<(u32, u32)>,
 }

@@ -41,13 +41,15 @@ pub(super) struct Stage {
     pub(super) sky: bool,
     pub(super) lamp: bool,
     pub(super) camera: bool,
+    /// Of the picture, where it is known.
+    pub(super) size: Option<(u32, u32)>,
 }
 
 impl Stage {
     /// For a model that has nothing but its surface.
     fn whole(options: &LoadOptions) -> Self {
         let sky = options.environment.is_none();
-        Self { ground: true, sky, lamp: sky, camera: true }
+        Self { ground: true, sky, lamp: sky, camera: true, size: options.size }
     }
 }
 
@@ -205,8 +207,9 @@ pub(super) fn set_the_stage(world: &mut World, bounds: Bounds, stage: Stage) {
     }
     if stage.camera {
         let settings = *world.get_resource_or_init::<RenderSettings>();
-        let aspect = f64::from(settings.width) / f64::from(settings.height);
-        spawn_camera(world, bounds, aspect);
+        let (width, height) = stage.size.unwrap_or((settings.width, settings.height));
+        // Sizes that no picture may have are refused when it is to be made.
+        spawn_camera(world, bounds, f64::from(width.max(1)) / f64::from(height.max(1)));
     }
 }
 
@@ -274,6 +277,22 @@ fn fitting_distance(bounds: Bounds, towards_camera: DVec3, vertical_fov: f64, as
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_model_is_framed_for_the_picture_that_is_asked_for() {
+        let distance = |size| {
+            let mut world = World::new();
+            set_the_stage(
+                &mut world,
+                Bounds::UNIT,
+                Stage::whole(&LoadOptions { size, ..LoadOptions::default() }),
+            );
+            world.query::<&Camera>().single(&world).unwrap().focus_distance
+        };
+        assert_eq!(distance(None), distance(Some((1280, 720))));
+        assert!(distance(Some((100, 400))) > 1.5 * distance(None));
+        assert!(distance(Some((0, 0))).is_finite());
+    }
 
     #[test]
     fn every_corner_is_in_the_picture_and_one_nearly_touches_its_edge() {

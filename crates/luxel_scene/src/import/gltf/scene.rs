@@ -219,6 +219,7 @@ impl Model {
             lamp: self.bounds.is_some() && !self.has_lights && options.environment.is_none(),
             camera: active.is_none(),
             sky: options.environment.is_none(),
+            size: options.size,
         };
         set_the_stage(world, self.bounds.unwrap_or(Bounds::UNIT), stage);
         self.report
