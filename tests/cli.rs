@@ -161,6 +161,17 @@ fn options_without_effect_are_noted_and_stdout_stays_json() {
         noted("-o a.png --quality high --max-depth 2"),
         "note: --quality has no effect on a.png: --spp and --max-depth say all that it stands for\n"
     );
+    let scene = asset("one_of_each.ron");
+    let scenes = format!(
+        "note: --scene has no effect on {}: only a glTF model has scenes to choose from\n",
+        scene.display()
+    );
+    assert_eq!(noted("-o a.png --scene 7"), scenes);
+    for command in ["info", "graph"] {
+        let outcome = run(luxel(folder.path()).arg(command).arg(&scene).args(["--scene", "7", "--json"]));
+        json(&outcome.stdout);
+        assert_eq!(outcome.stderr, scenes, "{command}");
+    }
     assert_eq!(noted("-o a.png --tone-map agx --exposure 1 --aov ids --sphere-accel bvh"), "");
     let mut command = luxel(folder.path());
     command.arg("render").arg(asset("empty.ron")).args(SMALL).args(["--backend", "cpu"]);
@@ -282,7 +293,7 @@ fn info_tells_counts_memory_and_features() {
     };
     let text = ask(&[]);
     for part in
-        ["1 spheres", "80 triangles", "1 voxel volumes", "TLAS depth", "total", "left out", "dropped: none"]
+        ["1 sphere\n", "80 triangles", "1 voxel volume\n", "TLAS depth", "total", "left out", "dropped: none"]
     {
         assert!(text.contains(part), "no '{part}' in {text}");
     }
@@ -430,4 +441,26 @@ fn file_names_need_not_be_text() {
     run(luxel(folder.path()).arg("render").arg(&scene).args(SMALL).args(["--backend", "cpu", "--json"]))
         .succeeded();
     assert!(folder.path().join(OsStr::from_bytes(b"sc\xffne.png")).is_file());
+}
+
+#[test]
+fn cameras_of_one_name_are_told_apart_by_number_and_no_name_steers_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = r#"{"asset": {"version": "2.0"},
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}],
+        "nodes": [{"name": "eye", "camera": 0}, {"name": "eye", "camera": 0}, {"name": "\u001b[2J", "camera": 0}],
+        "scenes": [{"nodes": [0, 1, 2]}]}"#;
+    std::fs::write(folder.path().join("a.gltf"), model).unwrap();
+    let text = run(luxel(folder.path()).args(["info", "a.gltf", "--mesh-accel", "naive"])).succeeded();
+    assert!(text.contains("cameras\n  0 'eye'\n  1 'eye'\n  2 '\\u{1b}[2J'\n"), "{text}");
+    assert!(text.contains("0 spheres\n") && !text.contains('\u{1b}'), "{text}");
+    let render = |camera: &str| {
+        let mut command = luxel(folder.path());
+        run(command.args(["render", "a.gltf", "--backend", "cpu", "--camera", camera]).args(SMALL))
+    };
+    for camera in ["eye", "1"] {
+        assert_eq!(render(camera).code, Some(0), "{camera}");
+    }
+    let stderr = render("3").stderr;
+    assert!(stderr.contains("(there is 0 'eye', 1 'eye', 2 '\\u{1b}[2J')"), "{stderr}");
 }

@@ -6,7 +6,7 @@ use luxel_testkit::{Random, TestMesh, meshes, rays};
 use rayon::prelude::*;
 
 use crate::common::{mesh_scene, trace};
-use crate::many::{count_bad, tally};
+use crate::many::tally;
 use crate::table::Case;
 
 #[test]
@@ -87,8 +87,7 @@ fn t21_rays_are_lost_in_a_t_junction_only_where_it_gapes() {
     let case = Case::begin("T21");
     let [unexplained, lost] = tally(21, case.size(), |random| {
         let mesh = t_junction(random);
-        let [a, b, right] = [mesh.positions[6], mesh.positions[7], mesh.positions[8]];
-        let _ = right;
+        let [a, b] = [mesh.positions[6], mesh.positions[7]];
         let origin = random.point(4.0);
         let ray: Ray<f32> = Ray::new(origin, a + (b - a) * random.uniform() - origin);
         let slab = SlabRay::new(&ray);
@@ -105,14 +104,45 @@ fn t21_rays_are_lost_in_a_t_junction_only_where_it_gapes() {
     case.end(format_args!("{size} rays, {lost} of them in gaps"));
 }
 
+/// What became of a ray that grazes a triangle.
+enum Grazed {
+    /// It was met where it is, or missed where it is not.
+    Right,
+    /// The hit is off by more than 2⁻¹² of its distance: roundings of the height over the plane are passed in this distance.
+    Off,
+    /// Missed, though the exact ray meets the triangle: roundings are as large as the triangle looks from there.
+    Lost,
+    /// Wrong beyond any rounding.
+    Wrong,
+}
+
+fn grazed(v: &[Vec3; 3], ray: &Ray<f32>) -> Grazed {
+    let exact = plane_parameter(v, ray);
+    let normal = triangle::area_normal::<f64>(&v.map(Vec3::as_dvec3)).normalize();
+    let slope = normal.dot(ray.direction.as_dvec3()).abs().max(1e-9);
+    // Coordinates are up to 4: sixteen half ulps of 1, as a distance along the ray.
+    let rounding = 16.0 * f64::from(f32::EPSILON) / slope;
+    match triangle::intersect(&SlabRay::new(ray), v, Exclude::Nothing) {
+        None if verdict(v, ray) == Verdict::Inside && exact > 0.0 => Grazed::Lost,
+        None => Grazed::Right,
+        Some(hit) => match (f64::from(hit.t) - exact).abs() {
+            off if off <= exact.abs() / 4096.0 => Grazed::Right,
+            off if off <= rounding => Grazed::Off,
+            _ => Grazed::Wrong,
+        },
+    }
+}
+
+/// At 1e-6 rad to the plane the distance is known to no more than a unit or so: the catalogue's 2⁻¹² is out of reach of
+/// single precision. What can be had is asserted, and the rest counted.
 #[test]
-fn t22_grazing_hits_are_where_they_are() {
+fn t22_grazing_hits_are_no_farther_off_than_roundings_reach() {
     let case = Case::begin("T22");
-    let bad = count_bad(22, case.size(), |random| {
+    let [off, lost, wrong] = tally(22, case.size(), |random| {
         let v = [(); 3].map(|()| random.point(1.0));
         let normal = triangle::area_normal::<f32>(&v);
         if normal.length() < 0.1 {
-            return false;
+            return [0; 3];
         }
         let normal = normal.normalize();
         let (u, w) = (random.between(0.1, 0.45), random.between(0.1, 0.45));
@@ -121,20 +151,15 @@ fn t22_grazing_hits_are_where_they_are() {
         let along = (along - normal * along.dot(normal)).normalize();
         let away = along + normal * (1e-6 * random.between(1.0, 3.0));
         let ray: Ray<f32> = Ray::new(target - away * random.between(2.0, 4.0), away);
-        is_off(&v, &ray)
+        match grazed(&v, &ray) {
+            Grazed::Right => [0; 3],
+            Grazed::Off => [1, 0, 0],
+            Grazed::Lost => [0, 1, 0],
+            Grazed::Wrong => [0, 0, 1],
+        }
     });
-    assert_eq!(bad, 0);
+    assert_eq!(wrong, 0);
     let size = case.size();
-    case.end(format_args!("{size} rays"));
-}
-
-/// A hit whose distance is off by more than 2⁻¹², and by more than the slope of the ray to the plane explains.
-fn is_off(v: &[Vec3; 3], ray: &Ray<f32>) -> bool {
-    let Some(hit) = triangle::intersect(&SlabRay::new(ray), v, Exclude::Nothing) else { return false };
-    let exact = plane_parameter(v, ray);
-    let (found, off) = (f64::from(hit.t), (f64::from(hit.t) - exact).abs());
-    let slope = triangle::area_normal::<f32>(v).normalize().dot(ray.direction).abs();
-    // Coordinates are up to 4 and rounded; the height over the plane that this costs is passed in this parameter.
-    let rounding = 64.0 * f64::from(f32::EPSILON) / f64::from(slope.max(1e-9));
-    !found.is_finite() || off > exact / 4096.0 + rounding
+    assert!(lost * 10_000 <= size, "{lost} of {size} lost");
+    case.end(format_args!("{size} rays, {off} off by roundings, {lost} lost to them"));
 }

@@ -208,7 +208,8 @@ fn g04_hits_of_triangles_agree_with_doubles() {
                 let normal = (v[1] - v[0]).cross(v[2] - v[0]).normalize();
                 let slope = normal.dot(exact.direction).abs();
                 let off = (f64::from(found.t) - hit.t).abs() / hit.t;
-                off * slope <= 2f64.powi(-18) && (f64::from(found.u) - hit.u).abs() * slope <= 1e-4
+                let uv = [f64::from(found.u) - hit.u, f64::from(found.v) - hit.v];
+                off * slope <= 2f64.powi(-18) && uv.iter().all(|off| off.abs() * slope <= 1e-4)
             }
             None => at_edge,
         };

@@ -160,7 +160,8 @@ fn f04_no_walk_gets_out_of_a_closed_box() {
     case.end(format_args!("{} bounces", sum[0]));
 }
 
-/// F01 on one triangle of a placed mesh: met again without being excluded, or moved too far.
+/// F01 on one triangle of a placed mesh: met again without being excluded. How far the start moves is limited in the tests
+/// of `luxel_geom::triangle`.
 fn meets_itself(scene: &FlatScene, slot: u32, random: &mut Random) -> bool {
     let (mut u, mut v) = (random.uniform(), random.uniform());
     if u + v > 1.0 {

@@ -40,7 +40,8 @@ fn table_place(r: &mut Random) -> Input {
     let cos = [0.0, 1.0, r.uniform(), r.log_between(1e-6, 1.0)];
     let cos = [cos[r.below(4) as usize], cos[r.below(4) as usize]];
     let roughness = [0.0, 0.0316, 1.0, r.uniform()][r.below(4) as usize];
-    input([(Vec3::new(cos[0], roughness, r.between(1.0, 2.6)), cos[1]), NOTHING, NOTHING, NOTHING])
+    let eta = [r.between(1.0, 2.6), 1.0 + r.log_between(1e-3, 1e4)][r.below(2) as usize];
+    input([(Vec3::new(cos[0], roughness, eta), cos[1]), NOTHING, NOTHING, NOTHING])
 }
 
 pub(crate) static CASES: [Case; 10] = [
@@ -171,12 +172,15 @@ pub(crate) static CASES: [Case; 10] = [
     },
     Case {
         function: "coat_albedo",
-        imports: "import package::geom::albedo::{coat_albedo, coat_albedo_average};",
-        body: "return give(vec4f(coat_albedo(in.a.x, in.a.y, in.a.z), coat_albedo_average(in.a.y, in.a.z), 0.0, 0.0), 1u);",
+        imports: "import package::geom::albedo::{coat_albedo, coat_albedo_average, rim_albedo, rim_albedo_average};",
+        body: "return give(vec4f(coat_albedo(in.a.x, in.a.y, in.a.z), coat_albedo_average(in.a.y, in.a.z),
+                rim_albedo(in.a.x, in.a.y), rim_albedo_average(in.a.y)), 1u);",
         twin: |i| {
             let [cos, roughness, eta, _] = i.a;
             let own = lookup::coat_albedo(&TABLES, cos, roughness, eta);
-            Expected::scaled(1, [own, lookup::coat_albedo_average(&TABLES, roughness, eta), 0.0, 0.0], 1.0)
+            let mean = lookup::coat_albedo_average(&TABLES, roughness, eta);
+            let rim = lookup::rim_albedo(&TABLES, cos, roughness);
+            Expected::scaled(1, [own, mean, rim, lookup::rim_albedo_average(&TABLES, roughness)], 1.0)
         },
         make: table_place,
     },

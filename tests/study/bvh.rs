@@ -94,13 +94,28 @@ fn a_stopped_study_keeps_what_it_has() {
     assert!(page.contains("not measured") && page.contains("id=\"fig-24\"") && page.contains("Incomplete"));
 }
 
+/// The heights of boxes, cameras and windows are all nothing.
+#[test]
+fn a_flat_model_is_studied_like_any_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("flat.obj");
+    std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n").unwrap();
+    let plan = Plan::tiny(&[BackendChoice::Cpu], &BunnyModel::from_file(&path).unwrap());
+    let out = folder.path().join("out");
+    let studied = bvh::run(&plan, &Origin::now(None), &out, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert!(studied.is_complete && studied.runs.iter().any(|run| run.model == "flat.obj"));
+}
+
 #[test]
 fn bad_input_is_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let bvh = |rest: &[&str]| run(luxel(folder.path()).args(["study", "bvh"]).args(rest));
-    let error = refused(bvh(&["none.obj", "--quick", "--out", "out"]), 2);
-    assert!(error.contains("none.obj"), "{error}");
-    assert!(names(&folder.path().join("out")).is_empty());
+    std::fs::write(folder.path().join("duck.txt"), "v 0 0 0\n").unwrap();
+    for (file, reason) in [("none.obj", "cannot be read"), ("duck.txt", ".obj, .ply, .gltf, .glb")] {
+        let error = refused(bvh(&[file, "--quick", "--out", "out"]), 2);
+        assert!(error.contains(file) && error.contains(reason), "{error}");
+        assert!(!folder.path().join("out").exists(), "a refused file leaves a folder");
+    }
     std::fs::write(folder.path().join("runs.jsonl"), "{\"study\":\"octree\"}\n").unwrap();
     let error = refused(bvh(&["--from", "runs.jsonl", "--out", "again"]), 2);
     assert!(error.contains("runs.jsonl:1: study 'octree': not of this study"), "{error}");

@@ -29,11 +29,20 @@ pub struct Refit {
     pub cost: f64,
     /// [`sah_cost`] of the tree as it was built.
     pub built_cost: f64,
+    /// Number of triangles.
+    pub triangle_count: u32,
 }
 
 /// A refitted tree that costs more than this many times what it cost when built is worth building anew: tracing it
 /// costs about as much more, and a build about as much as tracing one ray per ten triangles.
 pub const REBUILD_RATIO: f64 = 1.3;
+
+/// Trees over surfaces cost less than this for each doubling of their number of triangles. One that cost more when built was
+/// built over something else (a point, a line, a crumpled heap), and its cost says nothing about other shapes.
+const SURFACE_COST_PER_DOUBLING: f64 = 8.0;
+
+/// Share by which the cost of such a tree may change, up or down: then the shape has not.
+const SAME_SHAPE: f64 = 0.05;
 
 /// Builds the tree of a mesh. `ids[i]` is what a hit on `triangles[i]` reports.
 ///
@@ -113,7 +122,11 @@ impl MeshBvh {
             self.triangles.par_iter().zip(&self.order).map(moved).collect::<Result<_, AccelError>>()?;
         self.refit_boxes();
         self.bounds = root_bounds(&self.nodes);
-        Ok(Refit { cost: sah_cost(&self.nodes), built_cost: self.built_cost })
+        Ok(Refit {
+            cost: sah_cost(&self.nodes),
+            built_cost: self.built_cost,
+            triangle_count: self.triangles.len() as u32,
+        })
     }
 
     /// Children stand behind their parents.
@@ -136,7 +149,12 @@ impl MeshBvh {
 impl Refit {
     /// True if a tree built anew would save more than it costs.
     pub fn is_rebuild_due(&self) -> bool {
-        self.cost > REBUILD_RATIO * self.built_cost
+        let doublings = f64::from(self.triangle_count + 1).log2();
+        if self.built_cost <= SURFACE_COST_PER_DOUBLING * doublings {
+            self.cost > REBUILD_RATIO * self.built_cost
+        } else {
+            (self.cost - self.built_cost).abs() > SAME_SHAPE * self.built_cost
+        }
     }
 }
 

@@ -136,6 +136,18 @@ fn e04_a_refit_follows_the_vertices_and_says_when_to_build_anew() {
 }
 
 #[test]
+fn what_unfolds_from_a_shape_that_says_nothing_is_built_anew() {
+    let mesh = meshes::bumpy_sphere(60, 120);
+    let mut random = Random::new(8);
+    let mut crumpled = mesh.clone();
+    crumpled.positions.iter_mut().for_each(|p| *p = random.point(1.0));
+    for start in [mesh.map(|p| p * Vec3::X), mesh.map(|_| Vec3::ONE), crumpled] {
+        let mut built = build(&start, &BvhOptions::default());
+        assert!(built.refit(&mesh.positions, &mesh.triangles).unwrap().is_rebuild_due());
+    }
+}
+
+#[test]
 fn a_refit_that_fails_changes_nothing() {
     let mesh = meshes::soup(3, 100, 0.2);
     let mut built = build(&mesh, &BvhOptions::default());

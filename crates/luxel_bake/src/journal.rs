@@ -27,6 +27,7 @@ pub(crate) enum Topic {
     Attributes,
     Lamp,
     Lights,
+    Emitters,
     Sphere,
     SphereScale,
     Mesh,
@@ -100,6 +101,11 @@ pub enum BakeWarning {
         /// Triangles that are found by scattering alone.
         triangles: u64,
     },
+    /// Surfaces whose emission has a texture, or that have holes, are no lights that can be sampled.
+    UnevenLights {
+        /// Materials that are found by scattering alone.
+        materials: u64,
+    },
     /// The opacity of a sphere or of voxels has no effect.
     IgnoredOpacity {
         /// The entity.
@@ -143,6 +149,14 @@ impl fmt::Display for BakeWarning {
                     f,
                     "{triangles} shining triangles are too many to be sampled as lights; pictures will be noisy"
                 )
+            }
+            Self::UnevenLights { materials } => {
+                let are = if *materials == 1 {
+                    "material with a texture or holes is"
+                } else {
+                    "materials with a texture or holes are"
+                };
+                write!(f, "{materials} emitting {are} found by scattering only, not sampled as lights")
             }
             Self::IgnoredOpacity { entity } => {
                 write!(f, "{entity} is opaque: spheres and voxels have no opacity")

@@ -27,7 +27,7 @@ use crate::joined::Joined;
 use crate::journal::{BakeWarning, Journal, Topic};
 use crate::objects::{Object, Touched};
 use crate::store::Heaps;
-use emitters::{Emitter, find_emitters};
+use emitters::{Emitter, count_uneven, find_emitters};
 use lamps::{Lamp, lamps_of};
 
 /// Most lights of the table: the nodes of their tree fill the smallest storage buffer that adapters must offer (128 MiB).
@@ -46,6 +46,8 @@ pub(crate) struct Lights {
     lit: BTreeMap<u32, u32>,
     features: FeatureSet,
     unsampled: usize,
+    /// Materials that shine but are not even, so that they are not sampled.
+    uneven: usize,
 }
 
 impl Lights {
@@ -98,6 +100,9 @@ pub(crate) fn place_lights(
     let unsampled = lights.unsampled;
     let warning = (unsampled > 0).then_some(BakeWarning::UnsampledLights { triangles: unsampled as u64 });
     journal.warning(Entity::PLACEHOLDER, Topic::Lights, warning);
+    let uneven = lights.uneven;
+    let warning = (uneven > 0).then_some(BakeWarning::UnevenLights { materials: uneven as u64 });
+    journal.warning(Entity::PLACEHOLDER, Topic::Emitters, warning);
 }
 
 impl Lights {
@@ -112,6 +117,7 @@ impl Lights {
         if seen != self.seen {
             self.seen = seen;
             self.emitters = find_emitters(heaps, cloud, joined);
+            self.uneven = count_uneven(heaps, cloud, joined);
         }
     }
 

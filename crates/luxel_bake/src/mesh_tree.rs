@@ -40,8 +40,8 @@ impl MeshTree {
     ///
     /// `None`, with everything as it was, if the tree should be built: there is none, it has other triangles, a place is
     /// no place (a build then says so), or rays would pay for the old shape: its cost by the surface area heuristic is
-    /// more than [`REBUILD_RATIO`](luxel_accel::REBUILD_RATIO) times that of the last build. The cost is counted in the
-    /// tree, not timed, so that two runs decide alike.
+    /// more than [`REBUILD_RATIO`](luxel_accel::REBUILD_RATIO) times that of the last build, or another at all if that build
+    /// was over no surface. The cost is counted in the tree, not timed, so that two runs decide alike.
     pub(crate) fn refitted(
         &self,
         (positions, indices): (&[Vec3], &[[u32; 3]]),

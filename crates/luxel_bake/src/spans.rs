@@ -59,17 +59,17 @@ impl SpanAllocator {
             self.free.insert(first, end - first);
         }
     }
-
-    /// Number of records below [`Self::end`] that are in no live range.
-    pub fn free_records(&self) -> u32 {
-        self.free.values().sum()
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    /// Number of records below the end that are in no live range.
+    fn free_records(spans: &SpanAllocator) -> u32 {
+        spans.free.values().sum()
+    }
 
     #[test]
     fn a_hole_is_used_before_the_end() {
@@ -88,9 +88,9 @@ mod tests {
         let all: Vec<Span> = (0..3).map(|_| spans.allocate(2).unwrap()).collect();
         spans.release(all[0]);
         spans.release(all[1]);
-        assert_eq!(spans.free_records(), 4);
+        assert_eq!(free_records(&spans), 4);
         spans.release(all[2]);
-        assert_eq!((spans.end(), spans.free_records()), (0, 0));
+        assert_eq!((spans.end(), free_records(&spans)), (0, 0));
     }
 
     #[test]
@@ -121,7 +121,7 @@ mod tests {
                     prop_assert!(!is_taken, "record {} handed out twice", record);
                 }
                 let idle = taken.iter().filter(|taken| !**taken).count();
-                prop_assert_eq!(idle, spans.free_records() as usize);
+                prop_assert_eq!(idle, free_records(&spans) as usize);
                 prop_assert!(taken.last().copied().unwrap_or(true), "the end is not tight");
                 prop_assert!(!spans.free.iter().any(|(first, n)| spans.free.contains_key(&(first + n))));
             }

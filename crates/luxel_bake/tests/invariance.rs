@@ -106,50 +106,50 @@ fn edited_equals_fresh() {
     }
 }
 
-fn assert_edited_equals_fresh(name: &str, cloud: SphereCloud) {
-    let mut studio = Studio::empty();
-    studio.world.insert_resource(cloud);
-    OneOfEach::new(&mut studio);
-    let meshes = [
-        studio.decorated_asset(MeshSource::Cube, |_| {}),
-        studio.mesh_asset(MeshSource::Quad),
-        studio.decorated_asset(MeshSource::Icosphere { subdivisions: 1 }, |mesh| {
-            mesh.normals = mesh.positions.iter().map(|p| p.normalize()).collect();
-        }),
-    ];
-    let images = [(8, 4, 255), (3, 5, 40), (16, 16, 255)].map(|(w, h, a)| studio.image_asset(w, h, a));
-    let volumes = [VolumeSource::Menger { level: 1 }, VolumeSource::Lantern { size: 6 }]
-        .map(|s| studio.volume_asset(s));
-    studio.run();
-    let mut objects: Vec<Entity> = Vec::new();
-    for edit in 0..2_000 {
-        let r = random(edit);
+/// What edits choose from.
+struct Stock {
+    meshes: [AssetId; 3],
+    images: [AssetId; 3],
+    volumes: [AssetId; 2],
+}
+
+impl Stock {
+    fn new(studio: &mut Studio) -> Self {
+        let meshes = [
+            studio.decorated_asset(MeshSource::Cube, |_| {}),
+            studio.mesh_asset(MeshSource::Quad),
+            studio.decorated_asset(MeshSource::Icosphere { subdivisions: 1 }, |mesh| {
+                mesh.normals = mesh.positions.iter().map(|p| p.normalize()).collect();
+            }),
+        ];
+        let images = [(8, 4, 255), (3, 5, 40), (16, 16, 255)].map(|(w, h, a)| studio.image_asset(w, h, a));
+        let volumes = [VolumeSource::Menger { level: 1 }, VolumeSource::Lantern { size: 6 }]
+            .map(|s| studio.volume_asset(s));
+        Self { meshes, images, volumes }
+    }
+
+    /// A new object, an edit of one that is there, or the end of one, as the numbers say.
+    fn edit(&self, world: &mut World, objects: &mut Vec<Entity>, r: [f64; 8]) {
         let pick = |n: usize| (r[0] * n as f64) as usize;
-        let at = DVec3::new(r[1], r[2], r[3]) * 20.0 - 10.0;
-        let world = &mut studio.world;
-        let choice = (r[4] * 15.0) as u32;
         let old = (!objects.is_empty()).then(|| objects[pick(objects.len())]);
+        let choice = (r[4] * 15.0) as u32;
+        let at = DVec3::new(r[1], r[2], r[3]) * 20.0 - 10.0;
         match (choice, old) {
             (0..2, _) | (_, None) => {
                 objects.push(spawn(world, (Sphere { radius: 0.1 + r[5] }, Transform::at(at), material(r[6]))))
             }
-            (2, _) => objects.push(spawn(
-                world,
-                (MeshInstance { mesh: meshes[pick(3)] }, Transform::at(at), material(r[6])),
-            )),
+            (2, _) => {
+                let mesh = MeshInstance { mesh: self.meshes[pick(3)] };
+                objects.push(spawn(world, (mesh, Transform::at(at), material(r[6]))));
+            }
             (3, _) => {
-                objects.push(spawn(world, (VoxelVolume { volume: volumes[pick(2)] }, Transform::at(at))))
+                let volume = VoxelVolume { volume: self.volumes[pick(2)] };
+                objects.push(spawn(world, (volume, Transform::at(at))));
             }
             (4, Some(old)) if objects.len() > 30 => {
                 world.despawn(old);
                 objects.retain(|e| world.get_entity(*e).is_ok());
             }
-            (5, Some(old)) => {
-                world.get_mut::<Transform>(old).unwrap().scale =
-                    DVec3::new(0.5 + r[5], 0.5 + r[5], 0.2 - r[6])
-            }
-            (6, Some(old)) => _ = world.entity_mut(old).insert(material(r[6])),
-            (7, Some(old)) => _ = world.entity_mut(old).insert(Visibility(r[5] < 0.6)),
             (8, Some(old)) => {
                 // Only onto objects of lower number, so that no cycle can come about.
                 let parent =
@@ -159,16 +159,38 @@ fn assert_edited_equals_fresh(name: &str, cloud: SphereCloud) {
                     None => _ = world.entity_mut(old).remove::<ChildOf>(),
                 }
             }
-            (12, Some(old)) => _ = world.entity_mut(old).insert(textures(&images, r[5], r[6])),
-            (13, Some(old)) => {
-                let crease_angle = (r[5] * 4.0) as u32 as f32;
-                _ = world.entity_mut(old).insert(SmoothNormals { crease_angle })
-            }
             (14, _) if r[5] < 0.5 => world.resource_mut::<TextureBudget>().bytes = (r[6] * 1500.0) as u64,
-            (14, Some(old)) => _ = world.entity_mut(old).remove::<(MaterialTextures, SmoothNormals)>(),
-            (9, Some(old)) => _ = world.entity_mut(old).remove::<(Sphere, Material)>(),
-            (_, Some(old)) => world.get_mut::<Transform>(old).unwrap().translation = at,
+            (choice, Some(old)) => self.change(world, old, choice, at, r),
         }
+    }
+
+    /// An edit of one object.
+    fn change(&self, world: &mut World, old: Entity, choice: u32, at: DVec3, r: [f64; 8]) {
+        let mut object = world.entity_mut(old);
+        match choice {
+            5 => {
+                object.get_mut::<Transform>().unwrap().scale = DVec3::new(0.5 + r[5], 0.5 + r[5], 0.2 - r[6])
+            }
+            6 => _ = object.insert(material(r[6])),
+            7 => _ = object.insert(Visibility(r[5] < 0.6)),
+            9 => _ = object.remove::<(Sphere, Material)>(),
+            12 => _ = object.insert(textures(&self.images, r[5], r[6])),
+            13 => _ = object.insert(SmoothNormals { crease_angle: (r[5] * 4.0) as u32 as f32 }),
+            14 => _ = object.remove::<(MaterialTextures, SmoothNormals)>(),
+            _ => object.get_mut::<Transform>().unwrap().translation = at,
+        }
+    }
+}
+
+fn assert_edited_equals_fresh(name: &str, cloud: SphereCloud) {
+    let mut studio = Studio::empty();
+    studio.world.insert_resource(cloud);
+    OneOfEach::new(&mut studio);
+    let stock = Stock::new(&mut studio);
+    studio.run();
+    let mut objects: Vec<Entity> = Vec::new();
+    for edit in 0..2_000 {
+        stock.edit(&mut studio.world, &mut objects, random(edit));
         let scene = studio.run();
         if edit % 100 == 99 {
             studio.baker.validate(&studio.world).unwrap();

@@ -26,6 +26,10 @@ fn resource<R: Resource<Mutability = bevy_ecs::component::Mutable>>(change: fn(&
     Box::new(move |world| change(&mut world.resource_mut::<R>()))
 }
 
+fn edit(change: impl Fn(&mut World) + 'static) -> Edit {
+    Box::new(change)
+}
+
 #[test]
 fn every_field_changes_the_revision() {
     let mut studio = Studio::empty();
@@ -35,61 +39,67 @@ fn every_field_changes_the_revision() {
     let volume = studio.volume_asset(VolumeSource::Menger { level: 1 });
     let mut edits: Vec<(&str, Edit)> = Vec::new();
     for (what, entity) in [("sphere", ball), ("mesh", cube), ("volume", lantern)] {
-        edits.extend([
-            (what, field::<Transform>(entity, |t| t.translation.x += 0.125)),
-            (what, field::<Transform>(entity, |t| t.scale *= 1.5)),
-            (
-                what,
-                Box::new(move |world: &mut World| _ = world.entity_mut(entity).insert(Visibility(false)))
-                    as Edit,
-            ),
-            (what, field::<Visibility>(entity, |v| v.0 = true)),
-            (
-                what,
-                Box::new(move |world: &mut World| {
-                    _ = world.entity_mut(entity).insert(StableId(100 + entity.index_u32()))
-                }),
-            ),
-            (
-                what,
-                Box::new(move |world: &mut World| {
-                    _ = world.entity_mut(entity).insert(Material::lambert(Vec3::X))
-                }),
-            ),
-            (what, field::<Material>(entity, |m| m.emission = Vec3::X)),
-            (what, field::<Material>(entity, |m| m.emission = Vec3::Y)),
-            (what, field::<Material>(entity, |m| m.emission = Vec3::ZERO)),
-            (what, field::<Material>(entity, |m| m.surface = Surface::Lambert { albedo: Vec3::Z })),
-            (what, field::<Material>(entity, |m| m.surface = Surface::Metal { albedo: Vec3::Z, fuzz: 0.0 })),
-            (what, field::<Material>(entity, |m| m.surface = Surface::Metal { albedo: Vec3::Y, fuzz: 0.0 })),
-            (what, field::<Material>(entity, |m| m.surface = Surface::Metal { albedo: Vec3::Y, fuzz: 0.5 })),
-            (
-                what,
-                field::<Material>(entity, |m| m.surface = Surface::Dielectric { ior: 1.5, schlick: false }),
-            ),
-            (
-                what,
-                field::<Material>(entity, |m| m.surface = Surface::Dielectric { ior: 1.6, schlick: false }),
-            ),
-            (what, Box::new(move |world: &mut World| _ = world.entity_mut(entity).remove::<Material>())),
-            (what, Box::new(move |world: &mut World| _ = world.entity_mut(entity).insert(ChildOf(camera)))),
-            (what, Box::new(move |world: &mut World| _ = world.entity_mut(entity).remove::<ChildOf>())),
-        ]);
+        let all = edits_of_object(entity).into_iter().chain(edits_of_material(entity));
+        edits.extend(all.chain(edits_of_parents(entity, camera)).map(|edit| (what, edit)));
     }
     for entity in [cube, lantern, camera] {
         edits.push(("rotation", field::<Transform>(entity, |t| t.rotation = DQuat::from_rotation_y(0.5))));
     }
     edits.extend([
         ("radius", field::<Sphere>(ball, |s| s.radius = 0.75)),
-        (
-            "mesh",
-            Box::new(move |world: &mut World| world.get_mut::<MeshInstance>(cube).unwrap().mesh = mesh)
-                as Edit,
-        ),
-        (
-            "volume",
-            Box::new(move |world: &mut World| world.get_mut::<VoxelVolume>(lantern).unwrap().volume = volume),
-        ),
+        ("mesh", edit(move |world| world.get_mut::<MeshInstance>(cube).unwrap().mesh = mesh)),
+        ("volume", edit(move |world| world.get_mut::<VoxelVolume>(lantern).unwrap().volume = volume)),
+    ]);
+    edits.extend(edits_of_picture(camera));
+    edits.extend(edits_of_resources());
+    edits.push((
+        "active camera",
+        edit(move |world| {
+            spawn(world, (Camera::default(), ActiveCamera, Transform::at(DVec3::Z * 9.0)));
+            world.entity_mut(camera).remove::<ActiveCamera>();
+        }),
+    ));
+    assert_each_is_noticed(&mut studio, &edits);
+}
+
+fn edits_of_object(entity: Entity) -> Vec<Edit> {
+    vec![
+        field::<Transform>(entity, |t| t.translation.x += 0.125),
+        field::<Transform>(entity, |t| t.scale *= 1.5),
+        edit(move |world| _ = world.entity_mut(entity).insert(Visibility(false))),
+        field::<Visibility>(entity, |v| v.0 = true),
+        edit(move |world| _ = world.entity_mut(entity).insert(StableId(100 + entity.index_u32()))),
+    ]
+}
+
+fn edits_of_material(entity: Entity) -> Vec<Edit> {
+    let surface = |surface: fn() -> Surface| {
+        edit(move |world| world.get_mut::<Material>(entity).unwrap().surface = surface())
+    };
+    vec![
+        edit(move |world| _ = world.entity_mut(entity).insert(Material::lambert(Vec3::X))),
+        field::<Material>(entity, |m| m.emission = Vec3::X),
+        field::<Material>(entity, |m| m.emission = Vec3::Y),
+        field::<Material>(entity, |m| m.emission = Vec3::ZERO),
+        surface(|| Surface::Lambert { albedo: Vec3::Z }),
+        surface(|| Surface::Metal { albedo: Vec3::Z, fuzz: 0.0 }),
+        surface(|| Surface::Metal { albedo: Vec3::Y, fuzz: 0.0 }),
+        surface(|| Surface::Metal { albedo: Vec3::Y, fuzz: 0.5 }),
+        surface(|| Surface::Dielectric { ior: 1.5, schlick: false }),
+        surface(|| Surface::Dielectric { ior: 1.6, schlick: false }),
+        edit(move |world| _ = world.entity_mut(entity).remove::<Material>()),
+    ]
+}
+
+fn edits_of_parents(entity: Entity, parent: Entity) -> Vec<Edit> {
+    vec![
+        edit(move |world| _ = world.entity_mut(entity).insert(ChildOf(parent))),
+        edit(move |world| _ = world.entity_mut(entity).remove::<ChildOf>()),
+    ]
+}
+
+fn edits_of_picture(camera: Entity) -> Vec<(&'static str, Edit)> {
+    vec![
         ("eye", field::<Transform>(camera, |t| t.translation.y += 0.001)),
         ("fov", field::<Camera>(camera, |c| c.projection = Projection::Perspective { vertical_fov: 1.0 })),
         ("lens", field::<Camera>(camera, |c| c.lens_radius = 0.2)),
@@ -106,6 +116,11 @@ fn every_field_changes_the_revision() {
             field::<Camera>(camera, |c| c.projection = Projection::Orthographic { height: 4.0 }),
         ),
         ("height", field::<Camera>(camera, |c| c.projection = Projection::Orthographic { height: 5.0 })),
+    ]
+}
+
+fn edits_of_resources() -> Vec<(&'static str, Edit)> {
+    vec![
         ("min_spheres", resource::<SphereCloud>(|c| c.min_spheres = 1)),
         ("max_depth", resource::<SphereCloud>(|c| c.max_depth = 3)),
         ("auto", resource::<SphereTuning>(|t| t.auto = luxel_flat::SphereAccel::Bvh)),
@@ -118,15 +133,7 @@ fn every_field_changes_the_revision() {
         ("constant", resource::<Environment>(|e| *e = Environment::Constant(Vec3::splat(0.5)))),
         ("radiance", resource::<Environment>(|e| *e = Environment::Constant(Vec3::ONE))),
         ("removed environment", Box::new(|world: &mut World| _ = world.remove_resource::<Environment>())),
-        (
-            "active camera",
-            Box::new(move |world: &mut World| {
-                spawn(world, (Camera::default(), ActiveCamera, Transform::at(DVec3::Z * 9.0)));
-                world.entity_mut(camera).remove::<ActiveCamera>();
-            }),
-        ),
-    ]);
-    assert_each_is_noticed(&mut studio, &edits);
+    ]
 }
 
 /// Every edit restarts the picture, and comes to what a fresh bake comes to.

@@ -171,13 +171,17 @@ fn what_cannot_be_shown_is_left_out_and_told_once() {
     assert!(warnings[0].contains("colour: there is no image with asset id 999"), "{}", warnings[0]);
     assert!(warnings[0].contains("emission: a picture of radiance"), "{}", warnings[0]);
     let (mask, warnings) = textures(&mut studio, both(missing, image));
-    assert_eq!((mask, warnings.len()), (TEXTURE_ROLE_EMISSION, 1));
+    assert_eq!((mask, warnings.len()), (TEXTURE_ROLE_EMISSION, 2));
+    let uneven =
+        "1 emitting material with a texture or holes is found by scattering only, not sampled as lights";
+    assert_eq!(warnings[0], uneven);
     let uv1 = TextureRef { uv_set: 1, ..TextureRef::new(image) };
     let (mask, warnings) = textures(&mut studio, MaterialTextures { normal: Some(uv1), ..color(image) });
     assert_eq!((mask, warnings.len()), (TEXTURE_ROLE_COLOR, 1), "{mesh:?}");
     assert!(warnings[0].contains("no texture coordinates of set 1"), "{}", warnings[0]);
     let (mask, warnings) = textures(&mut studio, both(image, image));
-    assert_eq!((mask, warnings), (TEXTURE_ROLE_COLOR | TEXTURE_ROLE_EMISSION, vec![]));
+    let told = vec![uneven.to_owned()];
+    assert_eq!((mask, warnings), (TEXTURE_ROLE_COLOR | TEXTURE_ROLE_EMISSION, told));
 }
 
 /// Only textures whose factor makes a difference are there.

@@ -149,7 +149,7 @@ pub(crate) struct RenderArgs {
     pub(crate) mesh_quality: Option<MeshQuality>,
 
     /// A tree over each mesh and one over their places, or one over all triangles: for comparison, and not for scenes in
-    /// which things move. No picture depends on it [default: the scene's, else two]
+    /// which things move. Pictures are the same within rounding, ids are not [default: the scene's, else two]
     #[arg(long, value_name = "NAME", value_parser = values::named(MeshLevels::NAMES.to_vec()))]
     pub(crate) mesh_levels: Option<MeshLevels>,
 
@@ -161,7 +161,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) environment: Option<PathBuf>,
 
-    /// Name of the camera to look through [default: the scene's]
+    /// Camera to look through, by name or by number from 0 [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub(crate) camera: Option<String>,
 
@@ -198,10 +198,9 @@ pub(crate) struct RenderArgs {
     pub(crate) json: bool,
 }
 
-/// Options of `luxel info`.
+/// A scene and what is asked of its structures, for `luxel info` and `luxel graph`.
 #[derive(Args)]
-#[command(after_help = after_help!("  luxel info assets/showcase.ron\n  luxel info assets/random_spheres.ron --sphere-accel bvh --json"))]
-pub(crate) struct InfoArgs {
+pub(crate) struct SceneArgs {
     /// Scene (.ron) or model (.gltf, .glb, .obj, .ply, .vox)
     pub(crate) file: PathBuf,
 
@@ -217,6 +216,26 @@ pub(crate) struct InfoArgs {
     #[arg(long, value_name = "NAME", value_parser = values::named(SphereAccel::NAMES.to_vec()))]
     pub(crate) sphere_accel: Option<SphereAccel>,
 
+    /// As if this way through meshes were asked for [default: the scene's, else bvh]
+    #[arg(long, value_name = "NAME", value_parser = values::named(MeshAccel::NAMES.to_vec()))]
+    pub(crate) mesh_accel: Option<MeshAccel>,
+
+    /// As if this much work in the trees of meshes were asked for [default: the scene's, else medium]
+    #[arg(long, value_name = "PRESET", value_parser = values::named(MeshQuality::NAMES.to_vec()))]
+    pub(crate) mesh_quality: Option<MeshQuality>,
+
+    /// As if these levels of trees over meshes were asked for [default: the scene's, else two]
+    #[arg(long, value_name = "NAME", value_parser = values::named(MeshLevels::NAMES.to_vec()))]
+    pub(crate) mesh_levels: Option<MeshLevels>,
+}
+
+/// Options of `luxel info`.
+#[derive(Args)]
+#[command(after_help = after_help!("  luxel info assets/showcase.ron\n  luxel info assets/random_spheres.ron --sphere-accel bvh --json"))]
+pub(crate) struct InfoArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
@@ -226,16 +245,12 @@ pub(crate) struct InfoArgs {
 #[derive(Args)]
 #[command(after_help = after_help!("  luxel graph assets/showcase.ron\n  luxel graph assets/empty.ron --aov --json"))]
 pub(crate) struct GraphArgs {
-    /// Scene (.ron) or model (.gltf, .glb, .obj, .ply, .vox)
-    pub(crate) file: PathBuf,
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
 
     /// As if first-hit outputs were asked for
     #[arg(long)]
     pub(crate) aov: bool,
-
-    /// As if this structure over the spheres were asked for [default: the scene's]
-    #[arg(long, value_name = "NAME", value_parser = values::named(SphereAccel::NAMES.to_vec()))]
-    pub(crate) sphere_accel: Option<SphereAccel>,
 
     /// Print one JSON object
     #[arg(long)]
@@ -349,7 +364,7 @@ pub(crate) struct OctreeArgs {
   luxel study bvh bunny.obj --backend gpu --out out
   luxel study bvh --from out/runs.jsonl --out again"))]
 pub(crate) struct BvhArgs {
-    /// Model (.obj, .ply) in place of the rabbit; where the number of triangles is varied the rabbit stays
+    /// Model (.obj, .ply, .gltf, .glb) in place of the rabbit; where the number of triangles is varied the rabbit stays
     #[arg(conflicts_with = "from")]
     pub(crate) file: Option<PathBuf>,
 

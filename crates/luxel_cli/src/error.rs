@@ -7,6 +7,8 @@ use luxel_engine::{EngineError, ExitCode};
 use luxel_study::StudyError;
 use thiserror::Error;
 
+use crate::reply::printable;
+
 /// Why a command came to no answer.
 #[derive(Debug, Error)]
 pub(crate) enum CliError {
@@ -87,9 +89,10 @@ fn print_line(message: &str) {
     eprintln!("error: {message}");
 }
 
-/// The message without line breaks, whatever a library or a file name put into it.
+/// The message without line breaks and control characters, whatever a library or a file put into it.
 pub(crate) fn one_line(message: &str) -> String {
-    message.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+    let line = message.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
+    printable(&line).into_owned()
 }
 
 fn list(paths: &[PathBuf]) -> String {

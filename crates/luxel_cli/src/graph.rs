@@ -1,6 +1,6 @@
 //! `luxel graph`: the passes that a scene would run, in order, and why each does or does not.
 use luxel_engine::graph::{self, NodeFacts};
-use luxel_engine::{Engine, ExitCode, Feature};
+use luxel_engine::{ExitCode, Feature};
 use serde::Serialize;
 
 use crate::args::GraphArgs;
@@ -15,13 +15,13 @@ struct Answer {
 
 /// Shows the render graph of a scene.
 pub(crate) fn graph(args: &GraphArgs) -> Result<ExitCode, CliError> {
-    let mut engine = Engine::load(&args.file)?;
-    args.sphere_accel.into_iter().for_each(|accel| engine.use_sphere_accel(accel));
+    let mut engine = args.scene.open()?;
+    args.scene.ask(&mut engine);
     let features = engine.bake()?.features;
     let features = features.with(Feature::Aovs, args.aov || features.has(Feature::Aovs));
     let nodes = graph::nodes(features, &engine.sphere_accel());
     if args.json {
-        reply::print_json(&Answer { scene: args.file.display().to_string(), nodes })?;
+        reply::print_json(&Answer { scene: args.scene.file.display().to_string(), nodes })?;
     } else {
         reply::print_text(&table(&nodes))?;
     }

@@ -19,6 +19,15 @@ pub(crate) fn without_spheres(asked: Option<SphereAccel>, facts: &SphereAccelFac
         .then(|| "--sphere-accel has no effect: the scene has no spheres".to_owned())
 }
 
+/// A note if a scene of a model was asked for and the file is none that has several.
+pub(crate) fn without_scenes(is_asked: bool, file: &Path) -> Option<String> {
+    let ending = file.extension().unwrap_or_default().to_ascii_lowercase();
+    let is_gltf = ending == "gltf" || ending == "glb";
+    (is_asked && !is_gltf).then(|| {
+        format!("--scene has no effect on {}: only a glTF model has scenes to choose from", file.display())
+    })
+}
+
 /// One note per option that was given and does not change what is written to `output`.
 ///
 /// `--aov` is never among them: it adds layers to an EXR and files beside a PNG.
@@ -38,11 +47,10 @@ pub(crate) fn ignored(args: &RenderArgs, output: &Path) -> Vec<String> {
         ("--quality", args.quality.is_some(), quality),
     ];
     let given = options.into_iter().filter(|(_, is_given, _)| *is_given);
-    given
-        .filter_map(|(option, _, why)| {
-            why.map(|why| format!("{option} has no effect on {}: {why}", output.display()))
-        })
-        .collect()
+    let without_effect = given.filter_map(|(option, _, why)| {
+        why.map(|why| format!("{option} has no effect on {}: {why}", output.display()))
+    });
+    without_scenes(args.scene.is_some(), &args.file).into_iter().chain(without_effect).collect()
 }
 
 #[cfg(test)]
@@ -80,6 +88,14 @@ mod tests {
     fn a_preset_has_no_effect_where_both_its_numbers_are_given() {
         assert_eq!(options_without_effect("a.png", "--quality low --spp 4 --max-depth 4"), ["--quality"]);
         assert!(options_without_effect("a.png", "--quality low --spp 4").is_empty());
+    }
+
+    #[test]
+    fn only_a_gltf_model_has_scenes() {
+        assert_eq!(options_without_effect("a.png", "--scene 1"), ["--scene"]);
+        for (file, has_note) in [("a.obj", true), ("a", true), ("a.GLTF", false), ("a.glb", false)] {
+            assert_eq!(without_scenes(true, Path::new(file)).is_some(), has_note, "{file}");
+        }
     }
 
     #[test]

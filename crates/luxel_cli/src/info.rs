@@ -2,23 +2,21 @@
 use std::fmt::Write;
 
 use luxel_engine::info::SceneInfo;
-use luxel_engine::{Engine, ExitCode, LoadOptions, SphereAccelFacts};
+use luxel_engine::{ExitCode, SphereAccelFacts};
 
 use crate::args::InfoArgs;
-use crate::error::CliError;
+use crate::error::{CliError, one_line};
 use crate::reply;
+
+/// The most cameras that are listed.
+const MOST_CAMERAS: usize = 32;
 
 /// Describes a scene.
 pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
-    let options = LoadOptions {
-        scene: args.scene.clone(),
-        environment: args.environment.clone(),
-        ..LoadOptions::default()
-    };
-    let mut engine = Engine::load_with(&args.file, &options)?;
+    let mut engine = args.scene.open()?;
     // Of the scene as it is in its file, whatever is asked for besides.
     let scene_hash = engine.scene_hash()?;
-    args.sphere_accel.into_iter().for_each(|accel| engine.use_sphere_accel(accel));
+    args.scene.ask(&mut engine);
     let info = SceneInfo { scene_hash, ..engine.info()? };
     if args.json {
         reply::print_json(&info)?;
@@ -30,6 +28,7 @@ pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
 
 fn text(info: &SceneInfo) -> String {
     let mut sections = vec![head(info), structures(info), memory(info), features(info)];
+    sections.push(lines("cameras", &cameras(&info.cameras)));
     sections.push(lines("used of the model", &info.used));
     sections.push(lines("ignored", &info.ignored));
     sections.push(lines("dropped", &info.dropped));
@@ -41,18 +40,32 @@ fn text(info: &SceneInfo) -> String {
 fn head(info: &SceneInfo) -> String {
     let baked = &info.baked;
     format!(
-        "{}  hash {}\nloaded in {:.3} s, built in {:.3} s\n\ncounts\n  {} spheres\n  {} mesh instances with {} triangles\n  \
-         {} voxel volumes\n  {} materials\n",
+        "{}  hash {}\nloaded in {:.3} s, built in {:.3} s\n\ncounts\n  {}\n  {} with {}\n  {}\n  {}\n",
         info.scene,
         info.scene_hash,
         info.load_secs,
         info.bake_secs,
-        baked.spheres,
-        baked.mesh_instances,
-        baked.instanced_triangles,
-        baked.volume_instances,
-        baked.materials
+        counted(baked.spheres, "sphere"),
+        counted(baked.mesh_instances, "mesh instance"),
+        counted(baked.instanced_triangles, "triangle"),
+        counted(baked.volume_instances, "voxel volume"),
+        counted(baked.materials, "material")
     )
+}
+
+/// `1 sphere`, `2 spheres`.
+fn counted(count: u64, unit: &str) -> String {
+    if count == 1 { format!("1 {unit}") } else { format!("{count} {unit}s") }
+}
+
+/// The first cameras with their numbers, and how many more there are.
+fn cameras(names: &[String]) -> Vec<String> {
+    let first = names.iter().enumerate().take(MOST_CAMERAS);
+    let mut lines: Vec<_> = first.map(|(number, name)| format!("{number} '{}'", one_line(name))).collect();
+    if names.len() > MOST_CAMERAS {
+        lines.push(format!("and {} more", names.len() - MOST_CAMERAS));
+    }
+    lines
 }
 
 fn structures(info: &SceneInfo) -> String {

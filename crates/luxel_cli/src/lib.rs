@@ -14,6 +14,7 @@ mod graph;
 mod ignored;
 mod info;
 mod interrupt;
+mod opened;
 mod progress;
 mod render;
 mod reply;
@@ -54,7 +55,7 @@ fn answer(cli: Cli, source: &Path) -> Result<luxel_engine::ExitCode, CliError> {
         Some(Command::Info(args)) => info::info(&args),
         Some(Command::Graph(args)) => graph::graph(&args),
         Some(Command::Compare(args)) => compare::compare(&args),
-        Some(Command::Study(args)) => study::study(&args, source),
+        Some(Command::Study(args)) => study::study(&args),
         Some(Command::Doctor(args)) => doctor::doctor(&args),
     }
 }

@@ -1,4 +1,5 @@
 //! The answer of a command, on stdout.
+use std::borrow::Cow;
 use std::io::{self, ErrorKind, Write};
 
 use serde::Serialize;
@@ -8,10 +9,31 @@ use crate::error::CliError;
 /// Prints the text; a reader that has closed the pipe has seen enough.
 pub(crate) fn print_text(text: &str) -> Result<(), CliError> {
     let mut stdout = io::stdout().lock();
-    match writeln!(stdout, "{}", text.trim_end()).and_then(|()| stdout.flush()) {
+    match writeln!(stdout, "{}", printable(text.trim_end())).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Stdout(error)),
         _ => Ok(()),
     }
+}
+
+/// Prints a line on stderr that is no error.
+#[expect(clippy::print_stderr, reason = "notices belong on stderr")]
+pub(crate) fn note(notice: &str) {
+    eprintln!("note: {notice}");
+}
+
+/// The text with control characters, but line feeds, and those that turn the direction of writing as codes: what is
+/// in a file must not steer a terminal.
+pub(crate) fn printable(text: &str) -> Cow<'_, str> {
+    let steers = |letter: char| {
+        letter.is_control() && letter != '\n'
+            || matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    if !text.contains(steers) {
+        return Cow::Borrowed(text);
+    }
+    let visible =
+        |letter: char| if steers(letter) { letter.escape_default().to_string() } else { letter.to_string() };
+    Cow::Owned(text.chars().map(visible).collect())
 }
 
 /// Prints one JSON object.
@@ -43,6 +65,12 @@ fn scaled(value: f64, step: f64, units: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_that_is_printed_steers_a_terminal() {
+        assert_eq!(printable("a\n  ü b"), "a\n  ü b");
+        assert_eq!(printable("\u{1b}[2J\u{7}\u{9b}\r\u{202e}"), "\\u{1b}[2J\\u{7}\\u{9b}\\r\\u{202e}");
+    }
 
     #[test]
     fn numbers_are_short_and_have_their_unit() {

@@ -1,7 +1,6 @@
 //! `luxel study`: measurements on this machine, and the page of what came out.
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use luxel_engine::{BackendChoice, ExitCode};
 use luxel_study::bvh::{self, BunnyModel};
@@ -14,17 +13,20 @@ use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
 use crate::reply;
 
-/// Makes the study that the arguments name; `source` is the folder that the program was built from.
-pub(crate) fn study(args: &StudyArgs, source: &Path) -> Result<ExitCode, CliError> {
+/// The commit that this program was built from, with a mark if there were changes; the build script finds it.
+const COMMIT: Option<&str> = option_env!("LUXEL_COMMIT");
+
+/// Makes the study that the arguments name.
+pub(crate) fn study(args: &StudyArgs) -> Result<ExitCode, CliError> {
     let line = match &args.study {
-        Study::Octree(args) => octree(args, source)?,
-        Study::Bvh(args) => bvh(args, source)?,
+        Study::Octree(args) => octree(args)?,
+        Study::Bvh(args) => bvh(args)?,
     };
     reply::print_text(&line)?;
     Ok(ExitCode::Done)
 }
 
-fn octree(args: &OctreeArgs, source: &Path) -> Result<String, CliError> {
+fn octree(args: &OctreeArgs) -> Result<String, CliError> {
     let OctreeArgs { options, out } = args;
     if let Some(list) = &options.from {
         return Ok(last_line(&octree::redo(list, out)?));
@@ -34,30 +36,29 @@ fn octree(args: &OctreeArgs, source: &Path) -> Result<String, CliError> {
     if let Some(secs) = options.seconds {
         plan = plan.with_secs_each(secs);
     }
-    let studied =
-        measure("octree study", source, |origin, observer| octree::run(&plan, origin, out, observer))?;
+    let studied = measure("octree study", |origin, observer| octree::run(&plan, origin, out, observer))?;
     Ok(last_line(&studied))
 }
 
-fn bvh(args: &BvhArgs, source: &Path) -> Result<String, CliError> {
+fn bvh(args: &BvhArgs) -> Result<String, CliError> {
     let BvhArgs { file, options, out } = args;
     if let Some(list) = &options.from {
         return Ok(last_line(&bvh::redo(list, out)?));
     }
-    let model = file.clone().map_or(BunnyModel::Rabbit, BunnyModel::File);
+    // Before anything else, so that a name mistyped is told at once: no folder is made, no device asked for.
+    let model = file.as_deref().map_or(Ok(BunnyModel::Rabbit), BunnyModel::from_file)?;
     let make = if options.quick { bvh::Plan::quick } else { bvh::Plan::full };
     let mut plan = make(backends(options), &model);
     if let Some(secs) = options.seconds {
         plan = plan.with_secs_each(secs);
     }
-    let studied = measure("BVH study", source, |origin, observer| bvh::run(&plan, origin, out, observer))?;
+    let studied = measure("BVH study", |origin, observer| bvh::run(&plan, origin, out, observer))?;
     Ok(last_line(&studied))
 }
 
 /// Runs a study under a line of progress, until it is over or interrupted.
 fn measure<R>(
     name: &str,
-    source: &Path,
     run: impl FnOnce(&Origin, &mut StudyObserver<'_>) -> Result<Studied<R>, StudyError>,
 ) -> Result<Studied<R>, CliError> {
     let interrupt = Interrupt::listen()?;
@@ -69,7 +70,7 @@ fn measure<R>(
         }
         if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let studied = run(&Origin::now(commit(source)), &mut observer)?;
+    let studied = run(&Origin::now(COMMIT.map(str::to_owned)), &mut observer)?;
     if !studied.is_complete && !studied.files.is_empty() {
         progress.note("interrupted; what there is was written");
     }
@@ -84,19 +85,25 @@ fn backends(options: &StudyOptions) -> &'static [BackendChoice] {
     }
 }
 
-/// The commit of a source folder, with a mark if it has changes; `None` if it is no working copy, or git is missing.
-fn commit(source: &Path) -> Option<String> {
-    let mut git = Command::new("git");
-    git.arg("-C").arg(source).args(["describe", "--always", "--dirty", "--exclude=*"]);
-    let output = git.stderr(Stdio::null()).output().ok()?;
-    let name = String::from_utf8(output.stdout).ok()?.trim().to_owned();
-    (output.status.success() && !name.is_empty()).then_some(name)
-}
-
 fn last_line<R>(studied: &Studied<R>) -> String {
     if studied.files.is_empty() {
         return "stopped before the first run; nothing was written".to_owned();
     }
     let files = studied.files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
     format!("wrote {files}: {} runs", studied.runs.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_commit_is_that_of_the_build_and_needs_no_git_now() {
+        let is_working_copy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.git").exists();
+        let is_hex = |text: &str| text.len() >= 7 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+        match COMMIT {
+            Some(commit) => assert!(is_hex(commit.trim_end_matches("-dirty")), "{commit}"),
+            None => assert!(!is_working_copy),
+        }
+    }
 }

@@ -8,10 +8,15 @@ use luxel_bake::{BakeReport, Baker, TextureBudget};
 use luxel_film::tracer::BackendFacts;
 use luxel_film::{Display, ToneMap};
 use luxel_flat::FlatScene;
-use luxel_scene::{ActiveCamera, Camera, LoadOptions, LoadReport, Name, RenderSettings, ToneMapping};
+use luxel_scene::{
+    ActiveCamera, Camera, LoadOptions, LoadReport, Name, RenderSettings, StableId, ToneMapping,
+};
 
 use crate::EngineError;
 use crate::sphere_keeper::SphereKeeper;
+
+/// The most cameras that an error names.
+const MOST_NAMES: usize = 16;
 
 /// A loaded scene that can be edited, baked and rendered.
 pub struct Engine {
@@ -132,19 +137,32 @@ impl Engine {
         Display { tone_map: tone_map(settings.tone_map), exposure: settings.exposure }
     }
 
-    /// Looks through the camera of that name.
+    /// Every camera with its name, which may be empty, by rising id: the order of their numbers.
+    pub(crate) fn cameras(&mut self) -> Vec<(Entity, String)> {
+        let mut cameras =
+            self.world.query_filtered::<(Entity, Option<&Name>, Option<&StableId>), With<Camera>>();
+        let mut found: Vec<_> = cameras
+            .iter(&self.world)
+            .map(|(entity, name, id)| (id.copied(), entity, name.map_or_else(String::new, |n| n.0.clone())))
+            .collect();
+        found.sort_by_key(|&(id, entity, _)| (id, entity));
+        found.into_iter().map(|(_, entity, name)| (entity, name)).collect()
+    }
+
+    /// Looks through the camera of that name, or else of that number, from 0. Of several of one name it is the first.
     ///
     /// # Errors
     /// [`EngineError::NoSuchCamera`], with the names there are.
     pub fn use_camera(&mut self, name: &str) -> Result<(), EngineError> {
-        let mut cameras = self.world.query_filtered::<(Entity, Option<&Name>), With<Camera>>();
-        let named: Vec<(Entity, String)> = cameras
-            .iter(&self.world)
-            .map(|(entity, name)| (entity, name.map_or_else(String::new, |n| n.0.clone())))
-            .collect();
-        let Some((chosen, _)) = named.iter().find(|(_, n)| n == name) else {
-            let known = named.iter().map(|(_, n)| format!("'{n}'")).collect::<Vec<_>>().join(", ");
-            let known = if known.is_empty() { "none".to_owned() } else { known };
+        let named = self.cameras();
+        let numbered = || named.get(name.parse::<usize>().ok()?);
+        let Some((chosen, _)) = named.iter().find(|(_, n)| n == name).or_else(numbered) else {
+            let known = named.iter().enumerate().map(|(number, (_, n))| format!("{number} '{n}'"));
+            let mut known: Vec<_> = known.take(MOST_NAMES).collect();
+            if named.len() > MOST_NAMES {
+                known.push(format!("{} more", named.len() - MOST_NAMES));
+            }
+            let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
             return Err(EngineError::NoSuchCamera {
                 scene: self.path.display().to_string(),
                 name: name.to_owned(),

@@ -29,6 +29,8 @@ pub struct SceneInfo {
     pub sphere_accel: SphereAccelFacts,
     /// Every feature.
     pub features: Vec<FeatureFacts>,
+    /// Names of the cameras, in the order of their numbers; empty for one without a name.
+    pub cameras: Vec<String>,
     /// What of a model is shown, one line each.
     pub used: Vec<String>,
     /// What a model has and the scene does not show, one line each.
@@ -69,6 +71,7 @@ impl Engine {
             baked,
             sphere_accel,
             features: features(scene.features),
+            cameras: self.cameras().into_iter().map(|(_, name)| name).collect(),
             used: self.load_report().used.clone(),
             ignored: self.load_report().ignored.clone(),
             dropped: self.load_report().dropped.clone(),

@@ -121,12 +121,6 @@ pub fn mean(pixel: &FilmPixel) -> [f32; 3] {
     divide(std::array::from_fn(|i| even[i] + odd[i]), kept(pixel))
 }
 
-/// Mean radiance of the even and of the odd samples: two independent estimates of the same pixel.
-pub fn half_means(pixel: &FilmPixel) -> [[f32; 3]; 2] {
-    let kept = kept(pixel);
-    [divide(color_sum(&pixel.even), kept.div_ceil(2)), divide(color_sum(&pixel.odd), kept / 2)]
-}
-
 /// Variance of the mean's luminance: that of a sample (with Bessel's correction) over the number of samples,
 /// in squared units of radiance; 0 below two samples.
 pub fn variance_of_mean(pixel: &FilmPixel) -> f32 {

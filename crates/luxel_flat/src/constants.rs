@@ -44,6 +44,10 @@ shared_const! {
     pub const ALBEDO_GLASS_INDICES: u32 = luxel_geom::albedo::GLASS_INDICES;
     /// Where the averages of the conductor's albedo table start (`luxel_geom::albedo`).
     pub const ALBEDO_CONDUCTOR_AVERAGES: u32 = luxel_geom::albedo::CONDUCTOR_AVERAGES;
+    /// Where the rim's albedo table starts.
+    pub const ALBEDO_RIM: u32 = luxel_geom::albedo::RIM;
+    /// Where the rim's average albedos start.
+    pub const ALBEDO_RIM_AVERAGES: u32 = luxel_geom::albedo::RIM_AVERAGES;
     /// Where the coat's albedo table starts (`luxel_geom::albedo`).
     pub const ALBEDO_COAT: u32 = luxel_geom::albedo::COAT;
     /// Where the averages of the coat's albedo table start (`luxel_geom::albedo`).

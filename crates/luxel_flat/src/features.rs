@@ -188,7 +188,7 @@ features! {
         name: "nested_media",
         used: "there are several clear bodies, one of which may hold another",
         unused: "there are no two clear bodies",
-        symbols: &["surrounding_index"],
+        symbols: &["is_no_border", "surrounding", "immersed"],
         bindings: &[],
         counters: &[Counter::NestedBorders],
         nodes: &[],

@@ -52,11 +52,6 @@ impl Health {
         self.errors().pop_front()
     }
 
-    /// Takes all kept errors, oldest first.
-    pub(crate) fn take(&self) -> Vec<GpuError> {
-        self.errors().drain(..).collect()
-    }
-
     fn errors(&self) -> MutexGuard<'_, VecDeque<GpuError>> {
         self.uncaptured.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -77,7 +72,6 @@ mod tests {
             health.push(GpuError::Lost { reason: i.to_string() });
         }
         assert_eq!(health.pop(), Some(GpuError::Lost { reason: "0".to_owned() }));
-        assert_eq!(health.take().len(), MAX_KEPT_ERRORS - 1);
-        assert_eq!(health.pop(), None);
+        assert_eq!(std::iter::from_fn(|| health.pop()).count(), MAX_KEPT_ERRORS - 1);
     }
 }

@@ -86,11 +86,6 @@ impl Slicer {
         self.last_cost_ms = Some(cost_ms);
     }
 
-    /// Asks for another warm-up, after a kernel was replaced; what is known of the cost stays.
-    pub fn rewarm(&mut self) {
-        self.warm = false;
-    }
-
     /// Milliseconds that a unit is believed to take: the smoothed cost, or the last one where that was higher. `None`
     /// before the first measurement.
     pub fn unit_cost_ms(&self) -> Option<f64> {
@@ -132,10 +127,6 @@ mod tests {
         assert_eq!(slicer.unit_cost_ms(), None);
         assert_eq!(slicer.plan(1000), Slice { units: 1, warm_up: false });
         run(&mut slicer, 20, 0.1);
-        slicer.rewarm();
-        let again = slicer.plan(1000);
-        assert!(again.warm_up && again.units == 1);
-        slicer.record(again, 5000.0);
         assert_eq!(slicer.plan(1000), Slice { units: 80, warm_up: false });
     }
 

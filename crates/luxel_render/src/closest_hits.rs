@@ -96,16 +96,20 @@ impl RayShooter {
         self.trace(scene, rays.iter().map(|(ray, start)| path(ray, Some(start))).collect())
     }
 
-    /// Whether each ray meets anything in `(0, FAR]`; the rays' own intervals are not looked at.
+    /// Whether each ray meets anything in `(0, FAR]`, and what the search counted; the rays' own intervals are not looked at.
     ///
     /// # Errors
     /// When the scene does not fit the device, or the device fails.
-    pub fn occluded(&mut self, scene: &FlatScene, rays: &[Ray<f32>]) -> Result<Vec<bool>, GpuError> {
+    pub fn occluded(
+        &mut self,
+        scene: &FlatScene,
+        rays: &[Ray<f32>],
+    ) -> Result<(Vec<bool>, luxel_flat::Counters), GpuError> {
         let mut paths: Vec<Path> = rays.iter().map(shadow_path).collect();
-        self.run(SHADOW, scene, &mut paths)?;
+        let (counters, _) = self.run(SHADOW, scene, &mut paths)?;
         // A path whose shadow ray meets nothing gets its light. An invalid ray is none.
         let is_dark = |(path, ray): (&Path, &Ray<f32>)| path.radiance == [0.0; 3] && ray.is_valid();
-        Ok(paths.iter().zip(rays).map(is_dark).collect())
+        Ok((paths.iter().zip(rays).map(is_dark).collect(), counters))
     }
 
     fn trace(&mut self, scene: &FlatScene, mut paths: Vec<Path>) -> Result<GpuHits, GpuError> {

@@ -40,6 +40,7 @@ mod file;
 mod ids;
 mod import;
 mod lights;
+mod limits;
 mod material;
 mod mesh_structure;
 mod options;
@@ -122,7 +123,7 @@ pub fn load_with(path: &Path, world: &mut World, options: &LoadOptions) -> Resul
         world.insert_resource(Environment::Map { image, rotation: 0.0, strength: 1.0 });
         report.warnings.extend(warning);
     }
-    Ok(report)
+    Ok(report.readable())
 }
 
 fn environment_image(path: &Path) -> Result<(ImageAsset, Option<String>), SceneError> {

@@ -8,6 +8,7 @@ use base64::Engine as _;
 use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::World;
 use glam::{DVec3, Vec2, Vec3};
+use image::ImageEncoder as _;
 use luxel_scene::*;
 use serde_json::{Value, json};
 
@@ -143,7 +144,11 @@ fn every_number_of_a_material_arrives() {
     assert_eq!(material.opacity, Opacity::Mask { alpha: 0.4, cutoff: 0.7 });
     assert_eq!(
         report.ignored,
-        ["KHR_materials_sheen (1 material)", "occlusion textures (light finds its way) (1)"]
+        [
+            "KHR_materials_sheen (1 material)",
+            "dimming of emission by clear coats (1)",
+            "occlusion textures (light finds its way) (1)"
+        ]
     );
     assert!(report.used.contains(&"1 material".to_owned()));
     file["materials"][0]["extensions"] = json!({"KHR_materials_unlit": {}});
@@ -493,4 +498,68 @@ fn a_binary_file_is_the_same_model() {
     glb[4] = 1;
     fs::write(&path, &glb).unwrap();
     assert!(load(&path, &mut empty_world()).unwrap_err().to_string().contains("is glTF 1.0"));
+}
+
+#[test]
+fn extras_may_be_of_any_kind() {
+    for extras in
+        [json!("text"), json!(1.5), json!(true), json!(null), json!([1, "b", {"extras": 2}]), json!({})]
+    {
+        let mut file = model();
+        for place in
+            ["", "/asset", "/nodes/0", "/scenes/0", "/meshes/0", "/meshes/0/primitives/0", "/buffers/0"]
+        {
+            file.pointer_mut(place).unwrap()["extras"] = extras.clone();
+        }
+        let (_, report) = load_model(&file).unwrap_or_else(|message| panic!("{extras}: {message}"));
+        assert_eq!(report.ignored, [""; 0]);
+    }
+}
+
+#[test]
+fn a_small_file_cannot_make_millions_of_entities() {
+    let mut file = model();
+    let primitive = file["meshes"][0]["primitives"][0].clone();
+    file["meshes"][0]["primitives"] = Value::Array(vec![primitive; 1000]);
+    file["nodes"] = Value::Array(vec![json!({"mesh": 0}); 600]);
+    file["scenes"][0]["nodes"] = (0..600).collect();
+    assert!(error(&file).contains("shows meshes more than 524288 times"));
+}
+
+#[test]
+fn images_too_large_together_are_refused_by_their_headers() {
+    let folder = tempfile::tempdir().unwrap();
+    // Nothing but headers: who decodes one finds it damaged.
+    fs::write(folder.path().join("whole.png"), png_header(16384, 8192)).unwrap();
+    fs::write(folder.path().join("much.png"), png_header(16384, 8193)).unwrap();
+    let mut file = model();
+    file["images"] = json!([{"uri": "whole.png"}, {"uri": "much.png"}]);
+    file["textures"] = json!([{"source": 0}, {"source": 1}]);
+    file["materials"] = json!([{
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}, "emissiveTexture": {"index": 1}}]);
+    file["meshes"][0]["primitives"][0]["material"] = json!(0);
+    let (_, report) = load_in(folder.path(), &file, &LoadOptions::default()).unwrap();
+    assert!(report.warnings.iter().any(|line| line.contains("image 0 cannot be decoded")), "{report:?}");
+    assert!(report.warnings.iter().any(|line| line.contains("or 512 MiB")), "{report:?}");
+}
+
+/// The head of a PNG of 8-bit RGBA, and nothing else.
+fn png_header(width: u32, height: u32) -> Vec<u8> {
+    let mut png = Vec::new();
+    image::codecs::png::PngEncoder::new(&mut png)
+        .write_image(&[0; 4], 1, 1, image::ExtendedColorType::Rgba8)
+        .unwrap();
+    // Up to the first bytes of the picture: a reader looks for it before it says the size.
+    png.truncate(43);
+    png[16..20].copy_from_slice(&width.to_be_bytes());
+    png[20..24].copy_from_slice(&height.to_be_bytes());
+    let sum = crc32(&png[12..29]);
+    png[29..33].copy_from_slice(&sum.to_be_bytes());
+    png
+}
+
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0, |sum, &byte| {
+        (0..8).fold(sum ^ u32::from(byte), |sum, _| (sum >> 1) ^ (0xEDB8_8320 & (sum & 1).wrapping_neg()))
+    })
 }

@@ -138,7 +138,7 @@ fn heights_become_normals_and_normal_maps_stay() {
         newmtl late\nmap_Ks ramp.png\nbump ramp.png\n";
     let (mut world, report) = load_with_materials(folder, mtl);
     assert!(report.warnings.is_empty() && report.ignored.is_empty(), "{report:?}");
-    assert_eq!(report.used, ["3 texture images"], "{report:?}");
+    assert_eq!(report.used.last().unwrap(), "3 texture images", "{report:?}");
     let looks = looks(&mut world);
     let normal = |k: usize| looks[k].1.normal.unwrap();
     assert_eq!([0, 1, 2, 3].map(|k| normal(k).normal_scale), [0.5, -2.0, 0.25, 1.0]);
@@ -151,4 +151,24 @@ fn heights_become_normals_and_normal_maps_stay() {
     assert!((x / z + 40.0 / 255.0).abs() < 0.01 && y.abs() < 0.01, "{x} {y} {z}");
     assert_eq!(pixels(&image(&world, Some(normal(3)))), [[128, 128, 255, 255]; 16]);
     survives_saving(&world, folder);
+}
+
+#[test]
+fn pictures_too_large_to_be_mixed_are_refused_by_their_headers() {
+    let folder = tempfile::tempdir().unwrap();
+    // A TGA's header without a picture: 8193 x 8192 pixels of 32 bits.
+    let mut header = [0; 18];
+    header[2] = 2;
+    header[12..16].copy_from_slice(&[1, 32, 0, 32]);
+    header[16] = 32;
+    header[17] = 8;
+    fs::write(folder.path().join("much.tga"), header).unwrap();
+    let (_, report) = load_with_materials(
+        folder.path(),
+        "newmtl m\nmap_Kd much.tga\nmap_d -s 2 2 much.tga\nbump much.tga\n",
+    );
+    assert_eq!(report.warnings.len(), 1, "{report:?}");
+    let (_, report) = load_with_materials(folder.path(), "newmtl m\nbump much.tga\n");
+    let expected = "needs 257 MiB, and 256 MiB are left for it";
+    assert!(report.warnings.iter().any(|line| line.contains(expected)), "{report:?}");
 }

@@ -139,12 +139,24 @@ fn counts_of_a_header_allocate_nothing() {
     }
     for (text, expected) in [
         ("", "is empty"),
-        ("plx\n", "a.ply:1"),
-        ("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\nx\n", "a.ply:6: "),
+        ("plx\n", "a.ply:1: Expected magic number 'ply': 'plx'"),
+        (
+            "ply\nformat ascii 1.0\nelement vertex x\nend_header\n",
+            "a.ply:3: Couldn't parse line: 'element vertex x'",
+        ),
+        (
+            "ply\nformat ascii 1.0\nproperty float x\nend_header\n",
+            "a.ply:3: Property found without preceding element",
+        ),
+        (
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\nx\n",
+            "a.ply:6: Couldn't parse element line: 'x'",
+        ),
         ("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nend_header\n1\n", "cut short"),
     ] {
         let message = ply(text.as_bytes()).unwrap_err();
         assert!(message.contains(expected), "{text:?}: {message}");
+        assert!(!message.contains(['{', '\n', '\t']) && !message.contains("Error: "), "{message}");
     }
 }
 
@@ -243,4 +255,69 @@ fn textures_of_materials_are_found_below_the_folder_only() {
     assert_eq!(report.warnings.len(), 2, "{report:?}");
     assert!(report.warnings[0].contains("\"../secret.png\" is outside the model's folder"));
     assert!(report.ignored.is_empty(), "{report:?}");
+}
+
+#[test]
+fn what_of_an_obj_is_used_and_what_is_not_is_said_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let mtl = "newmtl m\nKa 1 1 1\nTf 1 0 0\nrefl -type sphere x.png\nmap_Ns n.png\ndisp d.png\ndecal e.png\nfoo bar\n\
+        newmtl n\nTf 0 1 0\n";
+    fs::write(folder.path().join("a.mtl"), mtl).unwrap();
+    let text = format!(
+        "mtllib a.mtl\n# note\nvt 0 0\nvn 0 0 1\n{CORNERS}usemtl m\nf 1/1/1 2/1/1 3/1/1\nusemtl n\nf 1 2 3\n\
+         l 1 2\nl 2 3\np 1\ns 1\ns off\ncurv 0 1 1 2\nsurf 0\nwhat 7\n"
+    );
+    let (_, report) = load_in(folder.path(), "a.obj", text.as_bytes()).unwrap();
+    assert_eq!(
+        report.used,
+        ["2 parts with 2 triangles", "2 materials", "normals", "texture coordinates", "colours"]
+    );
+    let ignored = [
+        "\"what\" lines (1)",
+        "curves (1)",
+        "free-form surfaces (1)",
+        "lines (2)",
+        "points (1)",
+        "smoothing groups (1)",
+        "\"Tf\" of materials (2)",
+        "\"decal\" of materials (1)",
+        "\"disp\" of materials (1)",
+        "\"foo\" of materials (1)",
+        "\"map_Ns\" of materials (1)",
+        "\"refl\" of materials (1)",
+    ];
+    assert_eq!(report.ignored, ignored);
+}
+
+#[test]
+fn a_material_file_is_read_once_and_notes_are_few() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.mtl"), "newmtl m\nKd 1 0\n").unwrap();
+    let again = "mtllib a.mtl\nmtllib ./a.mtl\n".repeat(20_000);
+    let missing: String = (0..20_000).map(|n| format!("mtllib no{n}.mtl\n")).collect();
+    let text = format!("{again}{missing}{CORNERS}usemtl m\nf 1 2 3\n");
+    let (_, report) = load_in(folder.path(), "a.obj", text.as_bytes()).unwrap();
+    assert_eq!(report.warnings.len(), 6, "{report:?}");
+    assert!(report.warnings[0].contains("a.mtl:2: \"Kd 1 0\" is not understood"), "{report:?}");
+    assert!(report.warnings[1].contains("\"no0.mtl\""), "{report:?}");
+    assert_eq!(report.warnings[5], "and 19996 more");
+}
+
+#[test]
+fn a_ply_of_many_elements_has_few_notes() {
+    let many: String = (0..20_000).map(|n| format!("element e{n} 0\nproperty float x\n")).collect();
+    let head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 1\nproperty list uchar int vertex_indices\n";
+    let text = format!("{head}{many}end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    let (_, report) = ply(text.as_bytes()).unwrap();
+    assert_eq!(report.ignored.len(), 33, "{report:?}");
+    assert_eq!(report.ignored[32], "and 19968 more");
+}
+
+#[test]
+fn a_vertex_that_is_nowhere_costs_its_triangles_only() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\nnan inf 0\n3 0 1 2\n3 0 1 3\n";
+    let (_, report) = ply(text.as_bytes()).unwrap();
+    assert_eq!(report.dropped, ["a.ply: dropped 1 of 2 triangles (1 not finite or beyond 1e18)"]);
 }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, ensure};
 use glam::DVec3;
 use luxel_geom::albedo::{self, axes, lookup};
-use luxel_geom::{microfacet as ggx, optics};
+use luxel_geom::{microfacet as ggx, optics, schlick};
 
 use crate::machine;
 
@@ -55,6 +55,8 @@ fn tables() -> Vec<f32> {
     let mut tables = vec![0.0; albedo::LENGTH as usize];
     let conductor = [1, albedo::CONDUCTOR_ROUGHNESSES, albedo::CONDUCTOR_COSINES];
     fill(&mut tables, 0, conductor, |_, roughness, cos| rule.mean(cos, roughness, |s| 1.0 - s.mirrored()));
+    let rim = [1, albedo::ROUGHNESSES, albedo::COSINES];
+    fill(&mut tables, albedo::RIM, rim, |_, r, cos| rule.rim(r, cos));
     let coat = [albedo::COAT_INDICES, albedo::ROUGHNESSES, albedo::COSINES];
     fill(&mut tables, albedo::COAT, coat, |place, roughness, cos| rule.coat(place, roughness, cos));
     let glass = [albedo::GLASS_INDICES, albedo::ROUGHNESSES, albedo::COSINES];
@@ -68,9 +70,12 @@ fn tables() -> Vec<f32> {
         [1, albedo::CONDUCTOR_AVERAGE_ROUGHNESSES],
         |t, _, r| average(r, |c| lookup::conductor_loss(t, c, r)).sqrt(),
     );
+    let rim = [1, albedo::AVERAGE_ROUGHNESSES];
+    averages(&mut tables, albedo::RIM_AVERAGES, rim, |t, _, r| average(r, |c| lookup::rim_albedo(t, c, r)));
     let coat = [albedo::COAT_INDICES, albedo::AVERAGE_ROUGHNESSES];
     averages(&mut tables, albedo::COAT_AVERAGES, coat, |t, p, r| {
-        average(r, |c| lookup::coat_albedo(t, c, r, axes::coat_index_at(p)))
+        let eta = axes::coat_index_at(p);
+        average(r, |c| lookup::coat_albedo(t, c, r, eta)) - lookup::level_average(t, r, eta)
     });
     let glass = [albedo::GLASS_INDICES, albedo::AVERAGE_ROUGHNESSES];
     averages(&mut tables, albedo::GLASS_AVERAGES, glass, |t, p, r| {
@@ -170,11 +175,17 @@ impl Square {
         self.steepness.iter().map(|&(u1, weight)| weight * row(u1)).sum()
     }
 
+    /// An entry of the rim's table.
+    fn rim(&self, roughness: f64, cos: f64) -> f64 {
+        let albedo = self.mean(cos, roughness, |s| s.rim() * s.mirrored());
+        albedo - schlick::schlick_weight(lookup::typical_cosine(cos, roughness))
+    }
+
     /// An entry of the coat's table. At η = 1 the quotient is taken in the limit.
     fn coat(&self, place: f64, roughness: f64, cos: f64) -> f64 {
         let eta = axes::coat_index_at(place.max(1e-3));
         let albedo = self.mean(cos, roughness, |s| s.reflectance(eta) * s.mirrored());
-        albedo / optics::fresnel_dielectric(cos, eta).reflectance
+        albedo / optics::fresnel_dielectric(lookup::typical_cosine(cos, roughness), eta).reflectance
     }
 }
 
@@ -188,6 +199,11 @@ struct Sample {
 impl Sample {
     fn reflectance(&self, eta: f64) -> f64 {
         optics::fresnel_dielectric(self.wo.dot(self.h), eta).reflectance
+    }
+
+    /// Schlick's weight.
+    fn rim(&self) -> f64 {
+        schlick::schlick_weight(self.wo.dot(self.h))
     }
 
     /// Share of the mirrored light that meets no second microfacet.

@@ -1,10 +1,10 @@
 //! Surfaces that shine and can be sampled.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 use luxel_flat::{
-    Instance, KIND_VOXELS, MATERIAL_ALPHA_BLEND, MATERIAL_ALPHA_MASK, MATERIAL_EMISSIVE, SphereRecord,
-    TEXTURE_ROLE_EMISSION,
+    Instance, KIND_VOXELS, MATERIAL_ALPHA_BLEND, MATERIAL_ALPHA_MASK, MATERIAL_EMISSIVE, MaterialRecord,
+    SphereRecord, TEXTURE_ROLE_EMISSION,
 };
 
 use super::lamps::Lamp;
@@ -59,8 +59,22 @@ pub(super) fn find_emitters(heaps: &Heaps, cloud: &Cloud, joined: &Joined) -> Ve
 /// Radiance that a material sends out everywhere alike; `None` if there is none, or it cannot be sampled.
 fn emission(heaps: &Heaps, slot: u32) -> Option<Vec3> {
     let record = heaps.materials.records.heap.as_slice().get(slot as usize)?;
-    let has_holes = record.flags & (MATERIAL_ALPHA_BLEND | MATERIAL_ALPHA_MASK) != 0;
-    let is_even = record.texture_mask & TEXTURE_ROLE_EMISSION == 0 && !has_holes;
     let emission = Vec3::from(record.emission);
-    (record.flags & MATERIAL_EMISSIVE != 0 && is_even && emission.is_finite()).then_some(emission)
+    (record.flags & MATERIAL_EMISSIVE != 0 && is_even(record) && emission.is_finite()).then_some(emission)
+}
+
+/// True if every point of a surface sends out the same.
+fn is_even(record: &MaterialRecord) -> bool {
+    let has_holes = record.flags & (MATERIAL_ALPHA_BLEND | MATERIAL_ALPHA_MASK) != 0;
+    record.texture_mask & TEXTURE_ROLE_EMISSION == 0 && !has_holes
+}
+
+/// How many materials of spheres and meshes shine unevenly, so that they are no lights of the table.
+pub(super) fn count_uneven(heaps: &Heaps, cloud: &Cloud, joined: &Joined) -> usize {
+    let records = heaps.materials.records.heap.as_slice();
+    let spheres = cloud.structure().spheres().as_slice().iter().filter(|sphere| sphere.radius > 0.0);
+    let slots = spheres.map(|sphere| sphere.material);
+    let slots: BTreeSet<u32> = slots.chain(joined.surfaces(heaps).map(|(_, material)| material)).collect();
+    let is_uneven = |record: &&MaterialRecord| record.flags & MATERIAL_EMISSIVE != 0 && !is_even(record);
+    slots.into_iter().filter_map(|slot| records.get(slot as usize)).filter(is_uneven).count()
 }

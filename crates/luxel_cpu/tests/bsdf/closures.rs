@@ -31,6 +31,10 @@ pub(crate) fn glass(roughness: f32, ior: f32) -> MaterialRecord {
     MaterialRecord { transmission: 1.0, ior, ..principled(roughness) }
 }
 
+fn opaque(roughness: f32, ior: f32) -> MaterialRecord {
+    MaterialRecord { ior, ..principled(roughness) }
+}
+
 pub(crate) fn thin(roughness: f32) -> MaterialRecord {
     MaterialRecord { flags: MATERIAL_THIN, ..glass(roughness, 1.5) }
 }
@@ -66,6 +70,10 @@ pub(crate) fn lossless(roughness: f32) -> Vec<(&'static str, MaterialRecord)> {
         ("glass", glass(roughness, 1.5)),
         ("water", glass(roughness, 1.33)),
         ("diamond", glass(roughness, 2.4)),
+        ("index 3", opaque(roughness, 3.0)),
+        ("index 10", opaque(roughness, 10.0)),
+        ("glass of index 3", glass(roughness, 3.0)),
+        ("glass of index 10", glass(roughness, 10.0)),
         ("thin glass", thin(roughness)),
     ]
 }

@@ -6,3 +6,4 @@ mod extremes;
 mod furnace;
 mod glass;
 mod reciprocity;
+mod tint;

@@ -5,6 +5,12 @@ use proptest::prelude::*;
 
 use super::*;
 
+/// Mean radiance of the even and of the odd samples.
+fn half_means(pixel: &FilmPixel) -> [[f32; 3]; 2] {
+    let kept = kept(pixel);
+    [divide(color_sum(&pixel.even), kept.div_ceil(2)), divide(color_sum(&pixel.odd), kept / 2)]
+}
+
 /// A sum that takes samples and can be asked for its mean.
 trait Accumulator: Default {
     fn add(&mut self, value: f32);

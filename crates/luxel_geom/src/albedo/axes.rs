@@ -1,14 +1,15 @@
 //! The axes of the albedo tables: which cosine, roughness and index stands at a place in `[0, 1]`, and back.
 //!
 //! A lobe changes fastest where the cosine is about α, so the cosine's axis gives half of its length to cosines up to
-//! some 4α. Near η = 1 Fresnel's equations change with the root of η − 1, so the index stands at the root of
-//! (η − 1) / (η + 1), which is the root of the amplitude that is reflected head-on.
+//! some 4α. Near η = 1 Fresnel's equations change with the root of η − 1, so the axis of the index works on
+//! s = √((η − 1) / (η + 1)), the root of the amplitude that is reflected head-on. It reaches from s = 0 to an infinite
+//! index at s = 1, and is dense at both ends; seen from the denser side, total reflection wants more places.
 use crate::{Real, microfacet};
 
-/// The largest index in the tables; beyond it the last entry holds.
-pub const MAX_ETA: f32 = 2.5;
-/// (η − 1) / (η + 1) of [`MAX_ETA`].
-const MAX_AMPLITUDE: f64 = 1.5 / 3.5;
+/// Place of the index 1 among those of glass: denser sides lie below, so many of the intervals are theirs.
+pub const GLASS_MIDDLE: f64 = 44.0 / 64.0;
+/// Least 1 − s² that a place stands for: in the tables an infinite index is finite.
+const LEAST_GAP: f64 = 1e-18;
 
 /// Roughness of the smoothest rough surface: the root of [`microfacet::SMOOTH_ALPHA`].
 fn least_roughness<R: Real>() -> R {
@@ -45,33 +46,46 @@ pub fn cosine_at<R: Real>(place: R, roughness: R) -> R {
     root * root
 }
 
-/// Place of a coat's index, which is at least 1.
+/// Place of a coat's index, which is at least 1: s / (s + √(1 − s)).
 #[inline]
 pub fn coat_index_place<R: Real>(eta: R) -> R {
-    let amplitude = ((eta - R::ONE) / (eta + R::ONE)).max(R::ZERO);
-    (amplitude / R::from_f64(MAX_AMPLITUDE)).sqrt().min(R::ONE)
+    let root = ((eta - R::ONE) / (eta + R::ONE)).max(R::ZERO).sqrt();
+    // 1 − s² without cancellation.
+    let gap = (R::from_f64(2.0) / (eta + R::ONE)).min(R::ONE);
+    root / (root + (gap / (R::ONE + root)).sqrt())
 }
 
 /// The coat's index at a place.
 #[inline]
 pub fn coat_index_at<R: Real>(place: R) -> R {
-    let amplitude = R::from_f64(MAX_AMPLITUDE) * place * place;
-    (R::ONE + amplitude) / (R::ONE - amplitude)
+    let two = R::from_f64(2.0);
+    let rest = two * (R::ONE - place);
+    let sum = place + (place * place + rest * rest).sqrt();
+    let (root, rest) = (two * place / sum, rest / sum);
+    let gap = (rest * rest * (R::ONE + root)).max(R::from_f64(LEAST_GAP));
+    (two - gap) / gap
 }
 
 /// Place of a relative index of glass: the far side's over the near side's, above or below 1.
 #[inline]
 pub fn glass_index_place<R: Real>(eta: R) -> R {
-    let amplitude = (eta - R::ONE) / (eta + R::ONE);
-    let root = (amplitude.abs() / R::from_f64(MAX_AMPLITUDE)).sqrt().min(R::ONE);
-    let half = R::from_f64(0.5);
-    if amplitude < R::ZERO { half - half * root } else { half + half * root }
+    let middle = R::from_f64(GLASS_MIDDLE);
+    if eta >= R::ONE {
+        return middle + (R::ONE - middle) * coat_index_place(eta);
+    }
+    let root = ((R::ONE - eta) / (R::ONE + eta)).sqrt().min(R::ONE);
+    middle - middle * (R::from_f64(2.0) * root / (R::ONE + root))
 }
 
 /// The relative index of glass at a place.
 #[inline]
 pub fn glass_index_at<R: Real>(place: R) -> R {
-    let side = R::from_f64(2.0) * place - R::ONE;
-    let amplitude = R::from_f64(MAX_AMPLITUDE) * side * side.abs();
-    (R::ONE + amplitude) / (R::ONE - amplitude)
+    let middle = R::from_f64(GLASS_MIDDLE);
+    if place >= middle {
+        return coat_index_at((place - middle) / (R::ONE - middle));
+    }
+    let from_middle = R::ONE - place / middle;
+    let root = from_middle / (R::from_f64(2.0) - from_middle);
+    let amplitude = root * root;
+    (R::ONE - amplitude).max(R::from_f64(LEAST_GAP)) / (R::ONE + amplitude)
 }

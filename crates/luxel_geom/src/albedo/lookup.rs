@@ -3,7 +3,7 @@
 //! `tables` is [`super::TABLES`] or a copy of it; entries that a shorter slice lacks read as zero. `cos` is the cosine of
 //! the direction and the normal in `[0, 1]`, `roughness` the root of α; both are held inside their axes.
 use super::axes;
-use crate::{Real, optics};
+use crate::{Real, optics, schlick};
 
 /// Two neighbouring entries of an axis, and how far the place lies between them.
 #[derive(Clone, Copy)]
@@ -65,19 +65,50 @@ pub fn conductor_loss_average<R: Real>(tables: &[f32], roughness: R) -> R {
     average_loss(tables, super::CONDUCTOR_AVERAGES, super::CONDUCTOR_AVERAGE_ROUGHNESSES, roughness)
 }
 
+/// A cosine that microfacets have to a direction: under a level view none lies level, and few lie at Brewster's angle,
+/// where the reflectance of a high index has a narrow dip.
+#[inline]
+pub fn typical_cosine<R: Real>(cos: R, roughness: R) -> R {
+    cos + R::from_f64(0.5) * roughness * roughness * (R::ONE - cos)
+}
+
+/// Share of the light from a direction that a rough surface reflects if its microfacets reflect by Schlick's weight,
+/// (1 − cos)⁵.
+#[inline]
+pub fn rim_albedo<R: Real>(tables: &[f32], cos: R, roughness: R) -> R {
+    let (row, column) = (axes::roughness_place(roughness), axes::cosine_place(cos, roughness));
+    let beyond = plane(tables, super::RIM, super::ROUGHNESSES, super::COSINES, row, column);
+    (beyond + schlick::schlick_weight(typical_cosine(cos, roughness))).clamped(R::ZERO, R::ONE)
+}
+
+/// [`rim_albedo`] averaged over cosine-weighted directions.
+#[inline]
+pub fn rim_albedo_average<R: Real>(tables: &[f32], roughness: R) -> R {
+    let column = Between::at(axes::roughness_place(roughness), super::AVERAGE_ROUGHNESSES);
+    column.mix(|i| entry(tables, super::RIM_AVERAGES + i))
+}
+
 /// Share of the light from a direction that a rough dielectric coat of index `eta` ≥ 1 reflects.
 #[inline]
 pub fn coat_albedo<R: Real>(tables: &[f32], cos: R, roughness: R, eta: R) -> R {
-    let smooth = optics::fresnel_dielectric(cos, eta).reflectance;
+    let typical = optics::fresnel_dielectric(typical_cosine(cos, roughness), eta).reflectance;
     let index = axes::coat_index_place(eta);
-    (smooth * volume(tables, super::COAT, super::COAT_INDICES, index, cos, roughness)).min(R::ONE)
+    (typical * volume(tables, super::COAT, super::COAT_INDICES, index, cos, roughness)).min(R::ONE)
 }
 
 /// [`coat_albedo`] averaged over cosine-weighted directions.
 #[inline]
 pub fn coat_albedo_average<R: Real>(tables: &[f32], roughness: R, eta: R) -> R {
     let (row, column) = (axes::coat_index_place(eta), axes::roughness_place(roughness));
-    plane(tables, super::COAT_AVERAGES, super::COAT_INDICES, super::AVERAGE_ROUGHNESSES, row, column)
+    let beyond =
+        plane(tables, super::COAT_AVERAGES, super::COAT_INDICES, super::AVERAGE_ROUGHNESSES, row, column);
+    (beyond + level_average(tables, roughness, eta)).clamped(R::ZERO, R::ONE)
+}
+
+/// What [`coat_albedo_average`] would be if every microfacet were met head-on.
+#[inline]
+pub fn level_average<R: Real>(tables: &[f32], roughness: R, eta: R) -> R {
+    schlick::eta_to_f0(eta) * (R::ONE - conductor_loss_average(tables, roughness))
 }
 
 /// Share of the light from a direction that single scattering at rough glass loses, reflection and transmission taken

@@ -7,11 +7,12 @@
 //! | table | entry | axes |
 //! |---|---|---|
 //! | conductor | loss: 1 − albedo, all light being reflected (F = 1) | roughness, cosine |
-//! | coat | albedo of a dielectric's reflection (exact Fresnel) over the Fresnel reflectance at that cosine | index, roughness, cosine |
+//! | rim | albedo of a reflection by Schlick's weight, (1 − cos)⁵, less that weight at [`lookup::typical_cosine`] | roughness, cosine |
+//! | coat | albedo of a dielectric's reflection (exact Fresnel) over the reflectance at [`lookup::typical_cosine`] | index, roughness, cosine |
 //! | glass | loss: 1 − albedo of reflection and transmission together, as energy (no factor η²) | index, roughness, cosine |
 //!
-//! and, for each, the cosine-weighted average over directions, 2 ∫ · cos dcos (for the coat: of the albedo itself).
-//! Losses, not albedos, so that a small loss keeps its digits. Of an average loss the square root is stored, at
+//! and, for each, the cosine-weighted average over directions, 2 ∫ · cos dcos (for the rim of the albedo itself, for the
+//! coat of the albedo less [`lookup::level_average`]). Losses, not albedos, so that a small loss keeps its digits. Of an average loss the square root is stored, at
 //! many roughnesses, so that it is in step with the losses even where they grow with the fourth power of the roughness.
 //!
 //! `cargo xtask generate albedo` computes them by quadrature in f64 (`crates/xtask/src/albedo.rs`). The lookups are in
@@ -23,23 +24,27 @@ pub mod lookup;
 pub const CONDUCTOR_COSINES: u32 = 64;
 /// Roughnesses in the conductor's table.
 pub const CONDUCTOR_ROUGHNESSES: u32 = 32;
-/// Cosines in the tables of coat and glass.
+/// Cosines in the tables of rim, coat and glass.
 pub const COSINES: u32 = 32;
-/// Roughnesses in the tables of coat and glass.
+/// Roughnesses in the tables of rim, coat and glass.
 pub const ROUGHNESSES: u32 = 24;
-/// Indices of refraction in the coat's table, from 1 to [`axes::MAX_ETA`].
-pub const COAT_INDICES: u32 = 16;
-/// Relative indices in the glass table, from 1 / [`axes::MAX_ETA`] to [`axes::MAX_ETA`]; the middle one is 1.
+/// Indices of refraction in the coat's table, from 1 to infinity.
+pub const COAT_INDICES: u32 = 24;
+/// Relative indices in the glass table, from 0 to infinity; 1 is at [`axes::GLASS_MIDDLE`].
 pub const GLASS_INDICES: u32 = 65;
 /// Roughnesses in the conductor's averages: those of its table, and 15 between any two.
 pub const CONDUCTOR_AVERAGE_ROUGHNESSES: u32 = 16 * (CONDUCTOR_ROUGHNESSES - 1) + 1;
-/// Roughnesses in the averages of coat and glass, likewise.
+/// Roughnesses in the averages of rim, coat and glass, likewise.
 pub const AVERAGE_ROUGHNESSES: u32 = 16 * (ROUGHNESSES - 1) + 1;
 
 /// Where the conductor's averages start; its table starts at 0.
 pub const CONDUCTOR_AVERAGES: u32 = CONDUCTOR_COSINES * CONDUCTOR_ROUGHNESSES;
+/// Where the rim's table starts.
+pub const RIM: u32 = CONDUCTOR_AVERAGES + CONDUCTOR_AVERAGE_ROUGHNESSES;
+/// Where the rim's averages start.
+pub const RIM_AVERAGES: u32 = RIM + COSINES * ROUGHNESSES;
 /// Where the coat's table starts.
-pub const COAT: u32 = CONDUCTOR_AVERAGES + CONDUCTOR_AVERAGE_ROUGHNESSES;
+pub const COAT: u32 = RIM_AVERAGES + AVERAGE_ROUGHNESSES;
 /// Where the coat's averages start.
 pub const COAT_AVERAGES: u32 = COAT + COSINES * ROUGHNESSES * COAT_INDICES;
 /// Where the glass table starts.

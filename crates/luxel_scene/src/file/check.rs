@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use glam::{DVec3, Vec3};
 
 use crate::assets::{ImageSource, MeshSource, VolumeSource};
+use crate::limits::{MAX_ENTITIES, MAX_INSTANCES};
 use crate::mesh_structure::{MAX_MESH_BINS, MAX_MESH_LEAF_SIZE, MeshStructure};
 use crate::procedural::Scatter;
 use crate::resources::{Environment, RenderSettings};
@@ -23,9 +24,6 @@ pub(crate) struct Flaw {
 
 /// Nothing, or the first flaw.
 pub(crate) type Checked = Result<(), Flaw>;
-
-/// The most entities of a scene file, scattered ones included.
-pub(super) const MAX_ENTITIES: u64 = 4_000_000;
 
 /// The largest id that a file may hold: room for new ones is left.
 pub(super) const MAX_ID: u32 = i32::MAX as u32;
@@ -106,7 +104,10 @@ pub(super) fn check_sections(file: &SceneFile) -> Result<(), (String, Flaw)> {
     }
     let scattered: u64 = file.scatter.iter().map(|scatter| u64::from(scatter.count)).sum();
     let entities = file.entities.len() as u64 + scattered;
-    between("number", entities, 0..=MAX_ENTITIES).map_err(at("entities"))
+    between("number", entities, 0..=MAX_ENTITIES).map_err(at("entities"))?;
+    let shown = file.entities.iter().filter(|entity| entity.mesh.is_some() || entity.voxels.is_some());
+    let shown = shown.count() as u64;
+    between("number of meshes and volumes", shown, 0..=MAX_INSTANCES).map_err(at("entities"))
 }
 
 fn check_environment(environment: &Environment) -> Checked {

@@ -11,6 +11,10 @@ use super::image::Decoded;
 /// on it, and becomes one on the x and y of the normals.
 const HEIGHT: f32 = 4.0;
 
+/// The most bytes of a picture that another is made of: 256 MiB, 8192 x 8192 pixels. To fit two of them to one size takes
+/// four times as much.
+pub(super) const MAX_INPUT_BYTES: u64 = 256 << 20;
+
 /// The colours of one picture (white without) with the opacity of another, as large as the one with more pixels.
 ///
 /// A mask says opacity by its alpha channel if that is not opaque all over, and else by its luminance.
@@ -18,18 +22,18 @@ const HEIGHT: f32 = 4.0;
 /// # Errors
 /// What is wrong, as the end of a sentence that begins with the picture's name.
 pub(super) fn masked(color: Option<Decoded>, mask: Decoded) -> Result<Decoded, String> {
-    let mut mask = eight_bit(mask)?;
-    let by_alpha = mask.pixels().any(|pixel| pixel[3] < u8::MAX);
-    for pixel in mask.pixels_mut() {
-        let opacity = if by_alpha { pixel[3] } else { luminance(pixel.0).round() as u8 };
-        pixel.0 = [u8::MAX, u8::MAX, u8::MAX, opacity];
+    let mut mask = Picture::of(mask)?;
+    let by_alpha = mask.texels.iter().any(|texel| texel[3] < u8::MAX);
+    for texel in &mut mask.texels {
+        let opacity = if by_alpha { texel[3] } else { luminance(*texel).round() as u8 };
+        *texel = [u8::MAX, u8::MAX, u8::MAX, opacity];
     }
-    let Some(color) = color else { return Ok(decoded(mask)) };
-    let (mut color, mask) = same_size(eight_bit(color)?, mask);
-    for (pixel, mask) in color.pixels_mut().zip(mask.pixels()) {
-        pixel[3] = mask[3];
+    let Some(color) = color else { return Ok(mask.into_decoded()) };
+    let (mut color, mask) = same_size(Picture::of(color)?, mask);
+    for (texel, mask) in color.texels.iter_mut().zip(&mask.texels) {
+        texel[3] = mask[3];
     }
-    Ok(decoded(color))
+    Ok(color.into_decoded())
 }
 
 /// The normal map of a picture whose luminance is heights, from central differences; it goes on beyond its edges with
@@ -38,17 +42,20 @@ pub(super) fn masked(color: Option<Decoded>, mask: Decoded) -> Result<Decoded, S
 /// # Errors
 /// As [`masked`].
 pub(super) fn normals(heights: Decoded) -> Result<Decoded, String> {
-    let picture = eight_bit(heights)?;
-    let (width, height) = picture.dimensions();
-    let at = |x: u32, y: u32| luminance(picture.get_pixel(x % width, y % height).0) * (HEIGHT / 255.0);
-    Ok(decoded(RgbaImage::from_fn(width, height, |x, y| {
+    let picture = Picture::of(heights)?;
+    let (width, height) = (picture.width, picture.height);
+    let at = |x: u32, y: u32| luminance(picture.texel(x % width, y % height)) * (HEIGHT / 255.0);
+    let texel = |x: u32, y: u32| {
         let along = (at(x + 1, y) - at(x + width - 1, y)) * 0.5;
         let down = (at(x, y + 1) - at(x, y + height - 1)) * 0.5;
         // A normal map's y runs up the picture.
         let normal = glam::Vec3::new(-along, down, 1.0).normalize();
         let [r, g, b] = normal.to_array().map(|n| (127.5 + 127.5 * n).round() as u8);
-        image::Rgba([r, g, b, u8::MAX])
-    })))
+        [r, g, b, u8::MAX]
+    };
+    let mut texels = Vec::with_capacity(picture.texels.len());
+    texels.extend((0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)));
+    Ok(Picture { width, height, texels }.into_decoded())
 }
 
 /// Rec. 709's luminance of the codes, 0 to 255.
@@ -57,31 +64,46 @@ fn luminance([r, g, b, _]: [u8; 4]) -> f32 {
 }
 
 /// Both as large as the one with more pixels: no picture becomes larger than one that was there.
-fn same_size(a: RgbaImage, b: RgbaImage) -> (RgbaImage, RgbaImage) {
-    let pixels = |image: &RgbaImage| u64::from(image.width()) * u64::from(image.height());
-    let (width, height) = if pixels(&a) >= pixels(&b) { a.dimensions() } else { b.dimensions() };
-    let fit = |image: RgbaImage| {
-        if image.dimensions() == (width, height) {
-            image
-        } else {
-            resize(&image, width, height, FilterType::Triangle)
+fn same_size(a: Picture, b: Picture) -> (Picture, Picture) {
+    let larger = if a.texels.len() >= b.texels.len() { &a } else { &b };
+    let (width, height) = (larger.width, larger.height);
+    (a.fit(width, height), b.fit(width, height))
+}
+
+/// A picture of 8 bits per channel, `width · height` texels.
+struct Picture {
+    width: u32,
+    height: u32,
+    texels: Vec<[u8; 4]>,
+}
+
+impl Picture {
+    fn of(decoded: Decoded) -> Result<Self, String> {
+        let (width, height) = (decoded.width, decoded.height);
+        match decoded.pixels {
+            ImagePixels::Rgba8(texels) => Ok(Self { width, height, texels }),
+            ImagePixels::RgbF32(_) => Err("holds radiance, and a texture has 8 bits".to_owned()),
         }
-    };
-    (fit(a), fit(b))
-}
+    }
 
-fn eight_bit(picture: Decoded) -> Result<RgbaImage, String> {
-    let ImagePixels::Rgba8(pixels) = picture.pixels else {
-        return Err("holds radiance, and a texture has 8 bits".to_owned());
-    };
-    RgbaImage::from_raw(picture.width, picture.height, pixels.into_flattened())
-        .ok_or_else(|| "has too few pixels".to_owned())
-}
+    fn texel(&self, x: u32, y: u32) -> [u8; 4] {
+        let index = y as usize * self.width as usize + x as usize;
+        self.texels.get(index).copied().unwrap_or_default()
+    }
 
-fn decoded(picture: RgbaImage) -> Decoded {
-    let (width, height) = picture.dimensions();
-    let pixels = picture.into_raw().as_chunks::<4>().0.to_vec();
-    Decoded { width, height, pixels: ImagePixels::Rgba8(pixels), mended: 0 }
+    fn fit(self, width: u32, height: u32) -> Self {
+        if (self.width, self.height) == (width, height) {
+            return self;
+        }
+        let from = RgbaImage::from_raw(self.width, self.height, self.texels.into_flattened());
+        let fitted = resize(&from.unwrap_or_default(), width, height, FilterType::Triangle);
+        Self { width, height, texels: fitted.as_raw().as_chunks().0.to_vec() }
+    }
+
+    fn into_decoded(self) -> Decoded {
+        let Self { width, height, texels } = self;
+        Decoded { width, height, pixels: ImagePixels::Rgba8(texels), mended: 0 }
+    }
 }
 
 #[cfg(test)]
@@ -90,7 +112,8 @@ mod tests {
     use super::*;
 
     fn picture(width: u32, height: u32, pixel: impl Fn(u32, u32) -> [u8; 4]) -> Decoded {
-        decoded(RgbaImage::from_fn(width, height, |x, y| image::Rgba(pixel(x, y))))
+        let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y));
+        Picture { width, height, texels: texels.collect() }.into_decoded()
     }
 
     fn rgba(picture: &Decoded) -> &[[u8; 4]] {

@@ -117,9 +117,10 @@ pub(crate) fn load_obj_scene(
         .ok_or_else(|| SceneError::unusable(typed, "has no triangle"))?;
     bounds.check(typed)?;
     let mut report = LoadReport {
+        used: file.used(),
         dropped: file.dropped_line(path).into_iter().collect(),
+        ignored: file.ignored,
         warnings: file.warnings,
-        ..LoadReport::default()
     };
     let mut images = ObjImages::new(path);
     let root = spawn(world, (model_name(path), Transform::default()));
@@ -174,9 +175,10 @@ pub(crate) fn load_vox_scene(
     let file = VoxFile::read(path).map_err(|error| error.renamed(typed))?;
     let bounds = Bounds { min: DVec3::ZERO, max: file.grid.size.as_dvec3() };
     let report = LoadReport {
+        used: file.used(),
         dropped: file.dropped_line(path).into_iter().collect(),
+        ignored: file.ignored,
         warnings: file.warnings,
-        ..LoadReport::default()
     };
     let volume = world
         .get_resource_or_init::<Assets>()

@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
 use crate::assets::{ImageAsset, ImagePixels, ImageSource};
 use crate::error::SceneError;
@@ -14,8 +14,15 @@ use super::read_model;
 /// The longest edge of an image, pixels.
 const MAX_EDGE: u32 = 16384;
 
-/// The most memory that an image may need while it is decoded.
-const MAX_BYTES: u64 = 1 << 30;
+/// The most bytes that an image may fill: 512 MiB, 16384 x 8192 pixels of a texture.
+pub(crate) const MAX_IMAGE_BYTES: u64 = 512 << 20;
+
+/// The most bytes that the images of a model may fill together: 768 MiB. Bake holds them and a pyramid of each at a time,
+/// and a graphics driver one more; all that must stay well below 4 GiB.
+pub(super) const MAX_MODEL_IMAGE_BYTES: u64 = 768 << 20;
+
+/// The most memory that decoding may need: twice as much, for files of 16 bits per channel.
+const MAX_DECODER_BYTES: u64 = 2 * MAX_IMAGE_BYTES;
 
 /// A decoded image.
 #[derive(Debug)]
@@ -49,16 +56,25 @@ impl Decoded {
 /// # Errors
 /// A file that cannot be read, is none of the formats, is damaged, or is too large.
 pub(crate) fn read_image(path: &Path) -> Result<Decoded, SceneError> {
-    let bytes = read_model(path)?;
-    let by_name = ImageFormat::from_path(path).ok();
-    guarded(path, || decode(&bytes, by_name).map_err(|message| SceneError::unusable(path, message)))
+    read_image_within(path, MAX_IMAGE_BYTES)
 }
 
-/// An image whose bytes are at hand; `by_name` is asked where they do not say what they are (TGA).
+/// The same, if its pixels fill at most `limit` bytes.
+///
+/// # Errors
+/// As [`read_image`].
+pub(super) fn read_image_within(path: &Path, limit: u64) -> Result<Decoded, SceneError> {
+    let bytes = read_model(path)?;
+    let by_name = ImageFormat::from_path(path).ok();
+    guarded(path, || decode(&bytes, by_name, limit).map_err(|message| SceneError::unusable(path, message)))
+}
+
+/// An image whose bytes are at hand; `by_name` is asked where they do not say what they are (TGA). One that would fill
+/// more than `limit` bytes is refused by its header: nothing is decoded or allocated for it.
 ///
 /// # Errors
 /// What is wrong, as the end of a sentence that begins with the image's name.
-pub(super) fn decode(bytes: &[u8], by_name: Option<ImageFormat>) -> Result<Decoded, String> {
+pub(super) fn decode(bytes: &[u8], by_name: Option<ImageFormat>, limit: u64) -> Result<Decoded, String> {
     let Some(format) = image::guess_format(bytes).ok().or(by_name) else {
         return Err("is no PNG, JPEG, BMP, TGA, HDR or EXR image".to_owned());
     };
@@ -66,29 +82,70 @@ pub(super) fn decode(bytes: &[u8], by_name: Option<ImageFormat>) -> Result<Decod
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_EDGE);
     limits.max_image_height = Some(MAX_EDGE);
-    limits.max_alloc = Some(MAX_BYTES);
-    reader.limits(limits);
-    let image = reader.decode().map_err(|error| explain(&error))?;
-    let (width, height) = (image.width(), image.height());
+    limits.max_alloc = Some(MAX_DECODER_BYTES);
+    reader.limits(limits.clone());
+    let mut decoder = reader.into_decoder().map_err(|error| explain(&error))?;
+    check_size(&decoder, limit)?;
+    limits.reserve(decoder.total_bytes()).map_err(|error| explain(&error))?;
+    decoder.set_limits(limits).map_err(|error| explain(&error))?;
+    pixels(decoder).map_err(|error| explain(&error))
+}
+
+/// Whether there are pixels, and not too many.
+fn check_size(decoder: &impl ImageDecoder, limit: u64) -> Result<(), String> {
+    let (width, height) = decoder.dimensions();
     if width == 0 || height == 0 {
         return Err("has no pixel".to_owned());
     }
-    let is_radiance = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+    let texel = if is_radiance(decoder.color_type()) { 12 } else { 4 };
+    let bytes = texel * u64::from(width) * u64::from(height);
+    if bytes > MAX_IMAGE_BYTES {
+        return Err(too_large());
+    }
+    if bytes > limit {
+        let (needs, left) = (bytes.div_ceil(1 << 20), limit >> 20);
+        return Err(format!("is one too many: it needs {needs} MiB, and {left} MiB are left for it"));
+    }
+    Ok(())
+}
+
+fn is_radiance(color: ColorType) -> bool {
+    matches!(color, ColorType::Rgb32F | ColorType::Rgba32F)
+}
+
+/// Decodes; the commonest kind of pixels without a second copy.
+fn pixels(decoder: impl ImageDecoder) -> Result<Decoded, ImageError> {
+    let (width, height) = decoder.dimensions();
+    if decoder.color_type() == ColorType::Rgba8 {
+        let mut pixels = vec![[0; 4]; width as usize * height as usize];
+        decoder.read_image(pixels.as_flattened_mut())?;
+        return Ok(Decoded { width, height, pixels: ImagePixels::Rgba8(pixels), mended: 0 });
+    }
+    let is_radiance = is_radiance(decoder.color_type());
+    let image = DynamicImage::from_decoder(decoder)?;
     Ok(if is_radiance { radiance(image) } else { eight_bit(image) })
 }
 
 fn explain(error: &ImageError) -> String {
     match error {
-        ImageError::Limits(_) => {
-            format!("is larger than {MAX_EDGE} x {MAX_EDGE} pixels or {} MiB", MAX_BYTES >> 20)
-        }
+        ImageError::Limits(_) => too_large(),
         other => format!("cannot be decoded ({})", super::one_line(&other.to_string())),
     }
 }
 
+fn too_large() -> String {
+    format!("is larger than {MAX_EDGE} x {MAX_EDGE} pixels or {} MiB", MAX_IMAGE_BYTES >> 20)
+}
+
 fn eight_bit(image: DynamicImage) -> Decoded {
     let (width, height) = (image.width(), image.height());
-    let pixels = image.into_rgba8().into_raw().as_chunks::<4>().0.to_vec();
+    let pixels = match image {
+        DynamicImage::ImageRgb8(image) => {
+            image.as_raw().as_chunks().0.iter().map(|&[r, g, b]| [r, g, b, u8::MAX]).collect()
+        }
+        DynamicImage::ImageLuma8(image) => image.as_raw().iter().map(|&l| [l, l, l, u8::MAX]).collect(),
+        other => other.into_rgba8().as_raw().as_chunks().0.to_vec(),
+    };
     Decoded { width, height, pixels: ImagePixels::Rgba8(pixels), mended: 0 }
 }
 

@@ -22,6 +22,7 @@ mod obj_text;
 mod ply;
 mod ply_elements;
 mod srgb;
+mod tally;
 mod vox;
 mod vox_chunks;
 mod vox_graph;
@@ -75,9 +76,16 @@ pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
-/// `text` without line breaks, whatever a library or a file put into it.
+/// `text` without line breaks and control characters, whatever a library or a file put into it.
 fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if words.contains(char::is_control) {
+        let visible = |letter: char| {
+            if letter.is_control() { letter.escape_default().to_string() } else { letter.into() }
+        };
+        return words.chars().map(visible).collect();
+    }
+    words
 }
 
 /// `3 meshes`, `1 mesh`.

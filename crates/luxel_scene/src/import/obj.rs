@@ -1,14 +1,18 @@
 //! Wavefront .obj: triangles by (object, material).
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use crate::assets::{Dropped, TriangleMesh};
 use crate::error::SceneError;
+use crate::limits::MAX_INSTANCES;
 
 use super::mtl_look::MtlLook;
 use super::obj_text::{CleanObj, clean};
-use super::{file_name, mtl, obj_mesh, read_model};
+use super::{counted, file_name, mtl, obj_mesh, read_model};
+
+/// The most parts of a file: each becomes an instance, and a ground comes on top.
+const MAX_PARTS: u64 = MAX_INSTANCES - 1;
 
 /// One object of an .obj file in one material.
 #[derive(Debug)]
@@ -30,6 +34,10 @@ pub(crate) struct ObjFile {
     pub(crate) triangles: u32,
     /// Triangles left out.
     pub(crate) dropped: Dropped,
+    /// Materials that parts are of.
+    materials: usize,
+    /// One line each: what is in the file, or in its materials, and not used.
+    pub(crate) ignored: Vec<String>,
     /// One line each: missing or damaged material files.
     pub(crate) warnings: Vec<String>,
 }
@@ -75,8 +83,16 @@ impl ObjFile {
             Ok((Vec::new(), library.indices()))
         })
         .map_err(|error| SceneError::unusable(path, error.to_string()))?;
+        let used: HashSet<_> = models.iter().filter_map(|model| model.mesh.material_id).collect();
+        let parts = group(models, &clean.triangle_ids, library);
+        if parts.len() as u64 > MAX_PARTS {
+            let message = format!("has {} objects; {MAX_PARTS} are the most", parts.len());
+            return Err(SceneError::unusable(path, message));
+        }
         Ok(Self {
-            parts: group(models, &clean.triangle_ids, library),
+            parts,
+            materials: used.iter().filter(|&&index| library.has(index)).count(),
+            ignored: clean.ignored.lines().into_iter().chain(library.ignored.lines()).collect(),
             triangles: clean.triangles,
             dropped: clean.dropped,
             warnings,
@@ -94,6 +110,24 @@ impl ObjFile {
         numbered.sort_unstable();
         (whole.triangle_ids, whole.triangles) = numbered.into_iter().unzip();
         whole
+    }
+
+    /// What a scene shows of the file, one line each.
+    pub(crate) fn used(&self) -> Vec<String> {
+        let triangles: usize = self.parts.iter().map(|part| part.mesh.triangles.len()).sum();
+        let mut used =
+            vec![format!("{} with {}", counted(self.parts.len(), "part"), counted(triangles, "triangle"))];
+        if self.materials > 0 {
+            used.push(counted(self.materials, "material"));
+        }
+        let any = |has: fn(&TriangleMesh) -> bool| self.parts.iter().any(|part| has(&part.mesh));
+        let carried = [
+            ("normals", any(|mesh| !mesh.normals.is_empty())),
+            ("texture coordinates", any(|mesh| !mesh.uvs[0].is_empty())),
+            ("colours", any(|mesh| !mesh.colors.is_empty())),
+        ];
+        used.extend(carried.iter().filter(|(_, is_there)| *is_there).map(|(what, _)| (*what).to_owned()));
+        used
     }
 
     /// The line about triangles left out, if any were.

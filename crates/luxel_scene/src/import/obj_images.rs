@@ -8,12 +8,10 @@ use crate::report::LoadReport;
 use crate::textures::{MaterialTextures, TextureRef};
 
 use super::confined::confined;
-use super::image::{Decoded, read_image};
+use super::derived::MAX_INPUT_BYTES;
+use super::image::{Decoded, MAX_IMAGE_BYTES, MAX_MODEL_IMAGE_BYTES, read_image_within};
 use super::mtl_look::{Map, Role};
 use super::{counted, derived, file_name, one_line};
-
-/// The most bytes that the images of a model may fill together: 1 GiB.
-const MAX_IMAGE_BYTES: u64 = 1 << 30;
 
 /// The images that materials asked for.
 #[derive(Debug)]
@@ -24,6 +22,8 @@ pub(super) struct ObjImages<'a> {
     made: HashMap<ImageSource, Option<Image>>,
     /// Names of files that were complained about.
     told: HashSet<String>,
+    /// Files that were no good, with the most bytes that they might have: they are not tried again.
+    unusable: HashSet<(PathBuf, u64)>,
     warnings: Vec<String>,
     /// Materials whose mask lies on the surface in another way than its colours.
     askew: usize,
@@ -41,9 +41,10 @@ impl<'a> ObjImages<'a> {
     pub(super) fn new(model: &'a Path) -> Self {
         Self {
             model,
-            left: MAX_IMAGE_BYTES,
+            left: MAX_MODEL_IMAGE_BYTES,
             made: HashMap::new(),
             told: HashSet::new(),
+            unusable: HashSet::new(),
             warnings: Vec::new(),
             askew: 0,
         }
@@ -91,7 +92,7 @@ impl<'a> ObjImages<'a> {
         let image = match self.made.get(&source) {
             Some(known) => *known,
             None => {
-                let picture = self.picture(map, &path);
+                let picture = self.picture(map, &path, MAX_IMAGE_BYTES);
                 self.keep(map, source, picture, assets)
             }
         };
@@ -128,8 +129,10 @@ impl<'a> ObjImages<'a> {
         (map, mask): (&Map, PathBuf),
         assets: &mut Assets,
     ) -> Option<Image> {
-        let opacity = self.picture(map, &mask)?;
-        let colors = color.and_then(|(map, path)| Some((self.picture(map, path)?, path.clone())));
+        let opacity = self.picture(map, &mask, MAX_INPUT_BYTES)?;
+        // Both are in memory at once.
+        let left = self.left.saturating_sub(opacity.bytes()).min(MAX_INPUT_BYTES);
+        let colors = color.and_then(|(map, path)| Some((self.picture(map, path, left)?, path.clone())));
         let (colors, color) = colors.unzip();
         let picture = self.or_tell(map, derived::masked(colors, opacity));
         self.keep(map, ImageSource::Masked { color, mask }, picture, assets)
@@ -143,7 +146,7 @@ impl<'a> ObjImages<'a> {
         let image = match self.made.get(&heights) {
             Some(known) => *known,
             None if colored.is_some() => colored,
-            None => match self.picture(map, &path) {
+            None => match self.picture(map, &path, MAX_INPUT_BYTES) {
                 Some(picture) if is_colored(&picture) => self.keep(map, file, Some(picture), assets),
                 picture => {
                     let normals = picture.and_then(|it| self.or_tell(map, derived::normals(it)));
@@ -159,9 +162,17 @@ impl<'a> ObjImages<'a> {
         self.or_tell(map, path)
     }
 
-    fn picture(&mut self, map: &Map, path: &Path) -> Option<Decoded> {
-        let picture = read_image(path).map_err(|error| format!("cannot be used ({error})"));
-        self.or_tell(map, picture)
+    /// The picture in a file, if it fills at most `limit` bytes and fits into what is left for all.
+    fn picture(&mut self, map: &Map, path: &Path, limit: u64) -> Option<Decoded> {
+        let attempt = (path.to_owned(), limit.min(self.left));
+        if self.unusable.contains(&attempt) {
+            return None;
+        }
+        let picture = read_image_within(path, attempt.1);
+        if picture.is_err() {
+            self.unusable.insert(attempt);
+        }
+        self.or_tell(map, picture.map_err(|error| format!("cannot be used ({error})")))
     }
 
     /// Makes a picture an asset, and remembers it under its source.

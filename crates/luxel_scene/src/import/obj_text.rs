@@ -17,6 +17,7 @@ use crate::error::SceneError;
 
 use super::assemble::flaw;
 use super::srgb::linear;
+use super::tally::Tally;
 
 /// A clean .obj text and what was left out of it.
 #[derive(Debug, Default)]
@@ -33,6 +34,8 @@ pub(super) struct CleanObj {
     pub(super) uses_materials: bool,
     /// The files that `mtllib` lines name.
     pub(super) libraries: Vec<String>,
+    /// Lines that this program does not use.
+    pub(super) ignored: Tally,
 }
 
 /// What the corners of a file may name.
@@ -71,10 +74,29 @@ pub(super) fn clean(path: &Path, text: &str) -> Result<CleanObj, SceneError> {
                 clean.name("usemtl", rest);
             }
             "mtllib" if !rest.is_empty() => clean.libraries.push(rest.to_owned()),
-            _ => {}
+            _ => {
+                if let Some(what) = unused(keyword, rest) {
+                    clean.ignored.add(&what);
+                }
+            }
         }
     }
     Ok(clean)
+}
+
+/// What a line says that this program does not use; `None` if that is nothing.
+fn unused(keyword: &str, rest: &str) -> Option<String> {
+    Some(match keyword {
+        "" | "usemtl" | "mtllib" => return None,
+        "s" if matches!(rest, "" | "off" | "0") => return None,
+        comment if comment.starts_with('#') => return None,
+        "l" => "lines".to_owned(),
+        "p" => "points".to_owned(),
+        "s" => "smoothing groups".to_owned(),
+        "curv" | "curv2" => "curves".to_owned(),
+        "surf" => "free-form surfaces".to_owned(),
+        other => format!("\"{}\" lines", other.chars().take(40).collect::<String>()),
+    })
 }
 
 impl CleanObj {

@@ -205,8 +205,37 @@ impl Content {
 }
 
 fn damaged(path: &Path, line: usize, error: &ParseError) -> SceneError {
-    let text = one_line(&error.to_string());
-    SceneError::model(path, line, text.chars().take(200).collect::<String>())
+    SceneError::model(path, line, plain(error))
+}
+
+/// Characters of a file's own text that an error quotes.
+const QUOTED: usize = 60;
+
+/// What the library says, without its own line number and the insides of its parser: its first line, and the text that
+/// it stumbled over.
+fn plain(error: &ParseError) -> String {
+    let text = error.to_string();
+    let own = error.line().map_or_else(String::new, |line| format!("Line {line}: "));
+    let text = text.strip_prefix(&own).unwrap_or(&text);
+    let first = text.lines().next().unwrap_or_default();
+    let what = first.split_once(", but saw").map_or(first, |(what, _)| what);
+    // A value in braces is a record of the library's.
+    let what = if what.contains('{') { what.split('\'').step_by(2).collect() } else { what.to_owned() };
+    let what = one_line(&what).trim_end_matches(['.', ':']).to_owned();
+    let quoted = ["\n\tString: '", "\n\tValue: '"].iter().find_map(|mark| text.split_once(mark));
+    let Some((_, quoted)) = quoted else { return what };
+    let quoted = quoted.split("\n\tError: ").next().unwrap_or_default();
+    let quoted: String = one_line(quoted.trim_end_matches('\'')).chars().take(QUOTED).collect();
+    format!("{what}: '{}'", quoted.trim_end())
+}
+
+/// Writes numbers that are none as one beyond all range, which the library can read: they cost their triangles only.
+fn with_readable_numbers(line: &mut String) {
+    let is_none = |word: &str| word.parse().is_ok_and(|number: f64| !number.is_finite());
+    if line.split_whitespace().any(is_none) {
+        let words = line.split_whitespace().map(|word| if is_none(word) { "1e999" } else { word });
+        *line = words.collect::<Vec<_>>().join(" ");
+    }
 }
 
 /// The elements of a file that are still to be read.
@@ -233,6 +262,7 @@ impl Source<'_> {
             let read = match self.encoding {
                 Encoding::Ascii => {
                     self.next_line(element, &mut line)?;
+                    with_readable_numbers(&mut line);
                     parser.read_ascii_element(&line, element)
                 }
                 Encoding::BinaryBigEndian => parser.read_big_endian_element(&mut self.rest, element),

@@ -3,6 +3,7 @@
 //! Models are turned and shifted by whole voxels, so merging them is exact. Z-up becomes Y-up by
 //! (x, y, z) → (x, z, −y): what faced MagicaVoxel's front view faces +Z.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use dot_vox::DotVoxData;
@@ -12,7 +13,7 @@ use crate::assets::{Voxel, VoxelGrid};
 use crate::error::SceneError;
 
 use super::vox_graph::{Instance, instances};
-use super::{file_name, read_model, vox_chunks, vox_palette};
+use super::{counted, file_name, read_model, vox_chunks, vox_palette};
 
 /// The most voxels that a file may expand to by showing models many times.
 const MAX_VOXELS: u64 = 1 << 27;
@@ -29,6 +30,10 @@ pub(crate) struct VoxFile {
     pub(crate) voxels: u64,
     /// Voxels outside their model's size.
     pub(crate) dropped: u64,
+    /// Models that are shown, each once.
+    models: usize,
+    /// One line each: what is in the file and not used.
+    pub(crate) ignored: Vec<String>,
     /// One line each: what is in the file and not in the grid.
     pub(crate) warnings: Vec<String>,
 }
@@ -55,7 +60,18 @@ impl VoxFile {
             };
             return Err(SceneError::unusable(path, message));
         }
-        Ok(Self { grid: grid(path, cells, &data)?, voxels, dropped, warnings: warnings(path, &data) })
+        let models = instances.iter().map(|instance| instance.model).collect::<HashSet<_>>().len();
+        let ignored = skeleton.ignored.lines();
+        let (grid, warnings) = (grid(path, cells, &data)?, warnings(path, &data));
+        Ok(Self { grid, voxels, dropped, models, ignored, warnings })
+    }
+
+    /// What a scene shows of the file, one line each.
+    pub(crate) fn used(&self) -> Vec<String> {
+        vec![
+            format!("{} with {}", counted(self.models, "model"), counted(self.grid.voxels.len(), "voxel")),
+            counted(self.grid.palette.len(), "material"),
+        ]
     }
 
     /// The line about voxels left out, if any were.

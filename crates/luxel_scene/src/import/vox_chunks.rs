@@ -9,6 +9,8 @@ use std::path::Path;
 
 use crate::error::SceneError;
 
+use super::tally::Tally;
+
 /// What the skeleton tells that `dot_vox` does not.
 #[derive(Debug, Default)]
 pub(super) struct Skeleton {
@@ -18,6 +20,8 @@ pub(super) struct Skeleton {
     pub(super) layer_ids: Vec<u32>,
     /// Number of models.
     pub(super) models: usize,
+    /// Chunks that this program does not use.
+    pub(super) ignored: Tally,
 }
 
 /// A model measures at most this many voxels along an edge: a voxel's coordinate is one byte.
@@ -74,7 +78,12 @@ impl Skeleton {
             }
             b"nTRN" | b"nGRP" | b"nSHP" => self.node_ids.push(first()?),
             b"LAYR" => self.layer_ids.push(first()?),
-            _ => {}
+            b"RGBA" | b"MATL" | b"PACK" => {}
+            b"rCAM" => self.ignored.add("cameras"),
+            b"rOBJ" => self.ignored.add("settings of the renderer"),
+            b"NOTE" => self.ignored.add("notes on the palette"),
+            b"IMAP" => self.ignored.add("orders of the palette"),
+            other => self.ignored.add(&format!("\"{}\" chunks", other.escape_ascii())),
         }
         Ok(())
     }

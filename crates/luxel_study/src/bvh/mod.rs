@@ -13,6 +13,7 @@
 mod configuration;
 mod figures;
 mod levels;
+mod model;
 mod page;
 mod plan;
 mod record;
@@ -24,10 +25,10 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
+pub use model::{BunnyModel, ModelFile};
 pub use page::page;
 pub use plan::Plan;
 pub use record::{FORMAT, Run, STUDY, Sweep};
-pub use scene::BunnyModel;
 
 use crate::kit::doors::doors;
 pub(crate) use study::BvhStudy;

@@ -47,7 +47,7 @@ fn method(runs: &Runs<'_>) -> Markup {
         (stopped(runs))
         p {
             "Scenes: those of the folder assets/scenes, and the rabbit at any fineness: an icosphere drawn out to ears, \
-             20 · n² triangles, 69,620 where the report has its bunny. Shown as the bunny: " (list(models)) ". "
+             20 · n² triangles, 69,620 where the report has its bunny (tables count the two of its ground too). Shown as the bunny: " (list(models)) ". "
             (turns(runs))
         }
         p {
@@ -61,6 +61,10 @@ fn method(runs: &Runs<'_>) -> Markup {
              heuristic, a node and a triangle test costing 1 each."
         }
         (judgement(runs, REPEATS))
+        p {
+            "Where the frames of two runs scatter more than that, it is their own scatter that counts: speeds whose middle \
+             halves of frames (from a quarter to three quarters) overlap cannot be told apart."
+        }
         @if runs.iter().any(|run| run.quick) {
             p {
                 strong { "Shortened (--quick): " }

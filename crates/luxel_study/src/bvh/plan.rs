@@ -3,14 +3,20 @@ use luxel_engine::{BackendChoice, MeshAccel, MeshLevels, MeshQuality, has_hardwa
 use luxel_scene::{MeshSplit, Surface};
 
 use super::configuration::Configuration;
+use super::model::BunnyModel;
 use super::record::Sweep;
-use super::scene::{BUNNY_FREQUENCY, BunnyModel, Scene};
+use super::scene::{BUNNY_FREQUENCY, Scene};
 use super::staging::{Staging, View};
 use super::study::BvhStudy;
 use crate::kit::plan::Plan as KitPlan;
 
 /// Up to this many triangles they are also tested one by one.
 const NAIVE_MOST: u32 = 5000;
+/// Tests of a frame in which every pixel tests every triangle, at most: as many as those of the rabbit in full. Larger
+/// models are compared in fewer pixels.
+const LOST_MOST_TESTS: f64 = 6e9;
+/// Fewest rows of those pixels.
+const LOST_LEAST_HEIGHT: u32 = 9;
 /// Fineness of the rabbit whose triangles are tested one by one on the GPU: a software driver ends loops after 65,536
 /// turns.
 const NAIVE_GPU_FREQUENCY: u32 = 57;
@@ -256,7 +262,11 @@ impl On<'_> {
 
     fn lost(&self) -> Group {
         let Extent { cpu_ear_height, gpu_ear_height, .. } = *self.extent;
-        let height = if self.is_gpu() { gpu_ear_height } else { cpu_ear_height };
+        let height = match self.model {
+            _ if self.is_gpu() => gpu_ear_height,
+            BunnyModel::Rabbit => cpu_ear_height,
+            BunnyModel::File(file) => cpu_ear_height.min(lost_height(file.asset.mesh.triangles.len())),
+        };
         let window = Configuration::new(sixteen_by_nine(height), 1, 0)
             .staged(Staging { view: View::Ear, ..Staging::default() });
         let searches = [MeshAccel::Naive, MeshAccel::BvhEscape, MeshAccel::Bvh];
@@ -337,12 +347,23 @@ impl On<'_> {
     }
 }
 
+/// Rows of the largest picture whose pixels can each test so many triangles.
+fn lost_height(triangles: usize) -> u32 {
+    let pixels = LOST_MOST_TESTS / (triangles as f64).max(1.0);
+    ((pixels * 9.0 / 16.0).sqrt() as u32).max(LOST_LEAST_HEIGHT)
+}
+
 fn sixteen_by_nine(height: u32) -> (u32, u32) {
     (height * 16 / 9, height)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use luxel_scene::{Dropped, MeshAsset, MeshSource, TriangleMesh};
+
+    use super::super::model::ModelFile;
     use super::*;
 
     const BOTH: [BackendChoice; 2] = [BackendChoice::Cpu, BackendChoice::Gpu];
@@ -372,6 +393,22 @@ mod tests {
             assert!(lost.clone().all(|group| group.configurations[0].mesh.accel == MeshAccel::Naive));
             assert_eq!(lost.count(), plan.0.backends().len());
         }
+    }
+
+    #[test]
+    fn a_large_model_is_not_tested_triangle_by_triangle_in_every_pixel() {
+        assert!(lost_height(69_620) > FULL.cpu_ear_height && lost_height(500) > 1000);
+        let triangles = 1_000_000;
+        let mesh = TriangleMesh { triangles: vec![[0, 1, 2]; triangles], ..TriangleMesh::default() };
+        let source = MeshSource::File("large.obj".into());
+        let asset = MeshAsset { source, mesh, dropped: Dropped::default() };
+        let model = BunnyModel::File(Arc::new(ModelFile { name: "large.obj".to_owned(), asset }));
+        for group in Plan::full(&BOTH[..1], &model).0.groups {
+            let (width, height) = group.configurations[0].size;
+            let tests = f64::from(width * height) * triangles as f64;
+            assert!(group.sweep != Sweep::Lost || tests <= LOST_MOST_TESTS, "{width}×{height}");
+        }
+        assert_eq!(lost_height(usize::MAX), LOST_LEAST_HEIGHT);
     }
 
     #[test]

@@ -1,52 +1,26 @@
 //! The scenes of the BVH study: the files in `assets/scenes`, built into the program, with the bunny that is wished for.
 //!
-//! A model from a file takes the place of the rabbit: it is put on the ground, one metre high, its axis where the
-//! rabbit's is.
+//! A model from a file takes the place of the rabbit: it is put on the ground, its longest side one metre, its axis
+//! where the rabbit's is.
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
 use luxel_scene::{
-    AssetId, Assets, Camera, Material, MeshAsset, MeshInstance, MeshSource, SceneError, Surface, Transform,
+    AssetId, Assets, Camera, Material, MeshAsset, MeshInstance, MeshSource, Surface, Transform,
 };
 
 use super::levels;
+use super::model::{BunnyModel, engine_error};
 use super::staging::Moved;
 use crate::StudyError;
 
 /// Fineness of the rabbit that stands for the bunny: 69,620 triangles.
 pub(crate) const BUNNY_FREQUENCY: u32 = 59;
 
-/// The model that figures show as the bunny.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum BunnyModel {
-    /// Our own rabbit, at any number of triangles.
-    #[default]
-    Rabbit,
-    /// An `.obj` or `.ply` file. Where the number of triangles is varied, the rabbit stands in.
-    File(PathBuf),
-}
-
-impl BunnyModel {
-    /// Its name in records.
-    pub(crate) fn name(&self) -> String {
-        match self {
-            Self::Rabbit => "rabbit".to_owned(),
-            Self::File(path) => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-        }
-    }
-
-    fn source(&self) -> MeshSource {
-        match self {
-            Self::Rabbit => MeshSource::Rabbit { frequency: BUNNY_FREQUENCY },
-            Self::File(path) => MeshSource::File(path.clone()),
-        }
-    }
-}
-
 /// A scene of the study.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Scene {
     /// The bunny alone under the sky.
     Bunny(BunnyModel),
@@ -65,11 +39,14 @@ pub(crate) enum Scene {
     OneOrTwoLevels(BunnyModel),
 }
 
-/// The bunny: its own surface and its highest point in the world.
+/// The bunny: its own surface, the middle of its foot and its highest point in the world, and its size there: its
+/// height, or if it came from a file its longest side.
 #[derive(Component)]
 pub(super) struct Bunny {
     pub(super) surface: Surface,
+    pub(super) foot: DVec3,
     pub(super) tip: DVec3,
+    pub(super) size: f64,
 }
 
 /// The floor that is part mirror.
@@ -113,12 +90,15 @@ impl Scene {
         }
     }
 
-    /// The mesh in place of the file's rabbit.
-    fn bunny(&self) -> Option<MeshSource> {
+    /// What stands in place of the file's rabbit.
+    fn bunny(&self) -> Result<Option<Model>, StudyError> {
         match self {
-            Self::Bunny(model) | Self::BunnyRoom(model) | Self::OneOrTwoLevels(model) => Some(model.source()),
-            Self::Rabbit(frequency) => Some(MeshSource::Rabbit { frequency: *frequency }),
-            _ => None,
+            Self::Bunny(model) | Self::BunnyRoom(model) | Self::OneOrTwoLevels(model) => match model {
+                BunnyModel::Rabbit => Model::rabbit(BUNNY_FREQUENCY).map(Some),
+                BunnyModel::File(file) => Ok(Model::of_file(file.asset.clone())),
+            },
+            Self::Rabbit(frequency) => Model::rabbit(*frequency).map(Some),
+            _ => Ok(None),
         }
     }
 }
@@ -126,11 +106,11 @@ impl Scene {
 /// A world with a scene.
 ///
 /// # Errors
-/// When the model of the bunny cannot be read.
+/// When a scene file cannot be loaded.
 pub(crate) fn world(scene: &Scene) -> Result<World, StudyError> {
     let mut world = load(scene.file())?;
-    if let Some(source) = scene.bunny() {
-        put_bunny(&mut world, source)?;
+    if let Some(model) = scene.bunny()? {
+        put_bunny(&mut world, model);
     }
     mark_mirror_floor(&mut world);
     if let Scene::OneOrTwoLevels(_) = scene {
@@ -150,10 +130,6 @@ fn load(text: &str) -> Result<World, StudyError> {
     Ok(world)
 }
 
-fn engine_error(error: SceneError) -> StudyError {
-    StudyError::Engine(error.into())
-}
-
 /// Entities that show a rabbit by a recipe.
 fn rabbits(world: &mut World) -> Vec<(Entity, AssetId)> {
     let mut instances = world.query::<(Entity, &MeshInstance)>();
@@ -164,36 +140,56 @@ fn rabbits(world: &mut World) -> Vec<(Entity, AssetId)> {
     all.into_iter().filter(|(_, id)| is_rabbit(id)).collect()
 }
 
-/// Puts another mesh in the place of the file's rabbit, one metre high before its own scale.
-fn put_bunny(world: &mut World, source: MeshSource) -> Result<(), StudyError> {
-    let asset = MeshAsset::from_source(source.clone()).map_err(engine_error)?;
-    let (low, high) = asset.mesh.bounds().ok_or_else(|| no_triangle(&source))?;
-    let (low, high) = (low.as_dvec3(), high.as_dvec3());
-    let is_file = matches!(source, MeshSource::File(_));
-    let (scale, foot) = match is_file {
-        true => {
-            (1.0 / (high.y - low.y).max(1e-30), DVec3::new(0.5, 0.0, 0.5) * (low + high) + DVec3::Y * low)
-        }
-        false => (1.0, DVec3::ZERO),
-    };
-    let tip = asset.mesh.positions.iter().copied().fold(Vec3::MIN, |a, b| if b.y > a.y { b } else { a });
-    let mesh = world.resource_mut::<Assets>().insert_mesh(asset);
+/// A mesh that may stand in place of the file's rabbit.
+struct Model {
+    asset: MeshAsset,
+    /// Before the rabbit's own scale.
+    scale: f64,
+    /// The middle of its foot, in its own space.
+    foot: DVec3,
+    /// After `scale`; of a rabbit, which is as high as its tip says, nothing.
+    size: Option<f64>,
+}
+
+impl Model {
+    fn rabbit(frequency: u32) -> Result<Self, StudyError> {
+        let asset = MeshAsset::from_source(MeshSource::Rabbit { frequency }).map_err(engine_error)?;
+        Ok(Self { asset, scale: 1.0, foot: DVec3::ZERO, size: None })
+    }
+
+    /// The longest side becomes one metre: a flat model has no height. `None` without a triangle.
+    fn of_file(asset: MeshAsset) -> Option<Self> {
+        let (low, high) = asset.mesh.bounds()?;
+        let (low, high) = (low.as_dvec3(), high.as_dvec3());
+        let foot = DVec3::new(0.5, 0.0, 0.5) * (low + high) + DVec3::Y * low;
+        let scale = 1.0 / (high - low).max_element().max(f64::MIN_POSITIVE);
+        Some(Self { asset, scale, foot, size: Some(1.0) })
+    }
+
+    /// Its highest point.
+    fn tip(&self) -> DVec3 {
+        let higher = |a: Vec3, b: Vec3| if b.y > a.y { b } else { a };
+        self.asset.mesh.positions.iter().copied().fold(Vec3::MIN, higher).as_dvec3()
+    }
+}
+
+/// Puts another mesh in the place of the file's rabbit.
+fn put_bunny(world: &mut World, model: Model) {
+    let (Model { scale, foot, size, .. }, tip) = (&model, model.tip());
+    let (scale, foot, size) = (*scale, *foot, *size);
+    let mesh = world.resource_mut::<Assets>().insert_mesh(model.asset);
     for (entity, _) in rabbits(world) {
         let mut bunny = world.entity_mut(entity);
         let Some(old) = bunny.get::<Transform>().copied() else { continue };
         let scaled = Transform { scale: old.scale * scale, ..old };
         let moved = old.rotation * (scaled.scale * foot);
         let place = Transform { translation: old.translation - moved, ..scaled };
-        let tip = place.affine().transform_point3(tip.as_dvec3());
+        let tip = place.affine().transform_point3(tip);
+        let foot = old.translation;
+        let size = size.map_or((tip.y - foot.y).abs(), |size| size * old.scale.max_element());
         let surface = bunny.get::<Material>().map(|material| material.surface).unwrap_or_default();
-        bunny.insert((place, MeshInstance { mesh }, Bunny { surface, tip }));
+        bunny.insert((place, MeshInstance { mesh }, Bunny { surface, foot, tip, size }));
     }
-    Ok(())
-}
-
-fn no_triangle(source: &MeshSource) -> StudyError {
-    let path = if let MeshSource::File(path) = source { path.as_path() } else { Path::new("(rabbit)") };
-    StudyError::Format { path: path.to_owned(), reason: "there is no triangle in it".to_owned() }
 }
 
 fn mark_mirror_floor(world: &mut World) {
@@ -245,7 +241,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("tall.obj");
         std::fs::write(&path, "v 9 10 9\nv 11 10 9\nv 10 14 11\nf 1 2 3\n").unwrap();
-        let model = BunnyModel::File(path);
+        let model = BunnyModel::from_file(&path).unwrap();
         assert_eq!(model.name(), "tall.obj");
         let mut world = world(&Scene::Bunny(model)).unwrap();
         let mut bunnies = world.query::<(&Bunny, &Transform)>();
@@ -253,8 +249,34 @@ mod tests {
         assert!((bunny.tip - DVec3::new(0.0, 1.0, 0.25)).length() < 1e-6, "{}", bunny.tip);
         let foot = place.affine().transform_point3(DVec3::new(10.0, 10.0, 10.0));
         assert!(foot.length() < 1e-6, "{foot}");
-        let missing = Scene::Bunny(BunnyModel::File(folder.path().join("none.obj")));
-        assert!(super::world(&missing).unwrap_err().to_string().contains("none.obj"));
+        assert!((bunny.foot, bunny.size) == (DVec3::ZERO, 1.0));
+    }
+
+    #[test]
+    fn a_flat_model_can_be_seen_from_everywhere() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("flat.obj");
+        // The highest corner of the other is its first, above the middle.
+        for (scale, text) in [
+            (0.25, "v 0 7 0\nv 4 7 0\nv 0 7 2\nf 1 2 3\n"),
+            (0.5, "v 1 7 1\nv 0 7 0\nv 2 7 2\nv 2 7 0\nf 1 2 4\nf 1 3 4\n"),
+        ] {
+            std::fs::write(&path, text).unwrap();
+            let mut world = world(&Scene::Bunny(BunnyModel::from_file(&path).unwrap())).unwrap();
+            let mut bunnies = world.query::<(&Bunny, &Transform)>();
+            let (bunny, place) = bunnies.single(&world).unwrap();
+            assert_eq!((place.scale.max_element(), bunny.size), (scale, 1.0));
+            for view in [View::Far, View::Near, View::Inside, View::Ear, View::Close] {
+                stage(&mut world, &Staging { view, ..Staging::default() });
+                let mut cameras = world.query_filtered::<&Transform, With<ActiveCamera>>();
+                let camera = cameras.single(&world).unwrap();
+                assert!(camera.translation.is_finite() && camera.translation.y > 0.0, "{view:?} {camera:?}");
+                assert!(
+                    camera.translation.length() < 10.0 && camera.rotation.is_finite(),
+                    "{view:?} {camera:?}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Questions that figures ask of the records, and the names that records have.
 use super::record::{Run, Sweep};
 use crate::kit::select::backend_name;
-use crate::kit::verdict::{AtCount, Case};
+use crate::kit::verdict::{AtCount, Case, Noise};
 
 /// Every triangle is tested.
 pub(crate) const NAIVE: &str = "naive";
@@ -66,6 +66,12 @@ impl<'a> Runs<'a> {
         let (fast, slow) = (self.with(fast), self.with(slow));
         let ratio = |count: u32| Some((count, fast.at(count).fps()? / slow.at(count).fps()?));
         self.counts().into_iter().filter_map(ratio).collect()
+    }
+
+    /// How far the ratio of two ways at a number of triangles may be off.
+    pub(crate) fn noise_between(&self, a: &str, b: &str, triangles: u32) -> Noise {
+        let at = self.at(triangles);
+        self.noise_of(&[at.with(a), at.with(b)])
     }
 
     /// Each backend's runs with its name.

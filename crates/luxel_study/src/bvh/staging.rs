@@ -8,6 +8,9 @@ use super::scene::{Bunny, MirrorFloor};
 /// Edges that are sharper than this stay edges when normals are interpolated, radians.
 const CREASE: f32 = 1.2;
 
+/// How far above the ground a camera is at least, in sizes of the bunny.
+const LOWEST: f64 = 0.05;
+
 /// What a configuration changes in its scene's world.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Staging {
@@ -88,12 +91,9 @@ fn set_smoothness(world: &mut World, smoothness: f32) {
 
 /// Looks at the bunny from where a view is.
 fn move_camera(world: &mut World, view: View) {
-    let mut bunnies = world.query::<(&Bunny, &Transform)>();
-    let Some((tip, place)) = bunnies.iter(world).next().map(|(bunny, place)| (bunny.tip, *place)) else {
-        return;
-    };
-    let size = (tip.y - place.translation.y).abs();
-    let middle = DVec3::new(place.translation.x, tip.y - 0.6 * size, place.translation.z);
+    let mut bunnies = world.query::<&Bunny>();
+    let Some(&Bunny { foot, tip, size, .. }) = bunnies.iter(world).next() else { return };
+    let middle = foot.with_y(tip.y - 0.6 * (tip.y - foot.y));
     let (eye, target, fov) = match view {
         View::Far => (middle + size * DVec3::new(2.4, 1.4, 5.2), middle, 0.35),
         View::Near => (middle + size * DVec3::new(0.15, 0.3, 0.78), middle + DVec3::Y * 0.1 * size, 0.8),
@@ -105,6 +105,8 @@ fn move_camera(world: &mut World, view: View) {
             (tip + size * DVec3::new(0.25, 0.12, 0.6), tip - DVec3::Y * 0.02 * size, 0.16)
         }
     };
+    // A flat model has nothing between its tip and the ground, where nothing would be seen.
+    let eye = eye.with_y(eye.y.max(foot.y + LOWEST * size));
     let mut cameras = world.query_filtered::<Entity, With<Camera>>();
     for camera in cameras.iter(world).collect::<Vec<_>>() {
         world.entity_mut(camera).remove::<ActiveCamera>();

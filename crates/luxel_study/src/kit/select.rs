@@ -47,6 +47,25 @@ impl<'a, R: Record> Runs<'a, R> {
         }
     }
 
+    /// How far a ratio of the speeds of some selections may be off: the noise, or more where their own frames scatter
+    /// more. Two speeds are within it whenever the middle halves of their frames overlap.
+    pub(crate) fn noise_of<'r>(&self, compared: impl IntoIterator<Item = &'r Self>) -> Noise
+    where
+        Self: 'r,
+    {
+        let scatter: f64 = compared.into_iter().map(Self::scatter).product();
+        Noise(self.noise().0.max(scatter - 1.0))
+    }
+
+    /// The most by which the median frame of a run differs from one of the middle half of its frames, as a ratio.
+    fn scatter(&self) -> f64 {
+        let of = |run: &R| {
+            let run = run.common();
+            (run.frame_ms / run.frame_ms_p25).max(run.frame_ms_p75 / run.frame_ms)
+        };
+        self.iter().map(of).fold(1.0, f64::max)
+    }
+
     /// True if the noise of the backends of these runs was measured.
     pub(crate) fn knows_noise(&self) -> bool {
         self.backends().iter().all(|backend| self.noise.contains_key(backend))

@@ -49,10 +49,10 @@ impl Noise {
         self.faster(1.0 / ratio)
     }
 
-    /// Is it faster by more than [`MAJOR`]?
+    /// Is it faster by more than [`MAJOR`]? Open within the noise where that alone is a major change.
     pub(crate) fn much_faster(self, ratio: f64) -> Case {
         match self.order(ratio) {
-            Order::Equal if ratio > MAJOR => Case::Open,
+            Order::Equal if ratio.max(1.0 + self.0) > MAJOR => Case::Open,
             _ => Case::from(ratio > MAJOR),
         }
     }
@@ -159,16 +159,16 @@ pub(crate) struct Crossover {
     pub(crate) from: Option<u32>,
 }
 
-/// The crossover of ratios of speeds that rise in their count.
-pub(crate) fn crossover(noise: Noise, ratios: &[AtCount]) -> Crossover {
-    let is_faster = |(_, ratio): &&AtCount| noise.order(*ratio) == Order::Faster;
+/// The crossover of ratios of speeds that rise in their count, by the noise at each count.
+pub(crate) fn crossover(noise: impl Fn(u32) -> Noise, ratios: &[AtCount]) -> Crossover {
+    let is_faster = |(count, ratio): &&AtCount| noise(*count).order(*ratio) == Order::Faster;
     let wins = ratios.iter().rev().take_while(is_faster).count();
     let (before, won) = ratios.split_at(ratios.len() - wins);
     Crossover { not_at: before.last().map(|(count, _)| *count), from: won.first().map(|(count, _)| *count) }
 }
 
 /// The crossover in words, by the number of `things`.
-pub(crate) fn crossover_text(noise: Noise, ratios: &[AtCount], things: &str) -> String {
+pub(crate) fn crossover_text(noise: impl Fn(u32) -> Noise, ratios: &[AtCount], things: &str) -> String {
     let said = |number: u32| count(u64::from(number));
     match crossover(noise, ratios) {
         Crossover { not_at: None, from: None } => "not measured".to_owned(),
@@ -251,14 +251,15 @@ mod tests {
         assert_eq!([2.0, 1.12, 0.5].map(|r| NOISE.alike(r)), [Case::No, Case::Yes, Case::No]);
         assert_eq!(
             [2.0, 1.2, 1.0, 0.8].map(|r| Noise(0.3).alike(r)),
-            [Case::No, Case::Open, Case::Yes, Case::Open]
+            [Case::No, Case::Open, Case::Open, Case::Open]
         );
+        assert_eq!([1.0, 0.7, 0.5].map(|r| Noise(0.6).much_faster(r)), [Case::Open, Case::Open, Case::No]);
     }
 
     #[test]
     fn the_crossover_is_where_the_winning_never_stops() {
         let of = |ratios: &[AtCount]| {
-            let Crossover { not_at, from } = crossover(NOISE, ratios);
+            let Crossover { not_at, from } = crossover(|_| NOISE, ratios);
             (not_at, from)
         };
         let ups_and_downs = [(10, 0.8), (50, 1.2), (100, 0.9), (250, 1.2), (500, 2.0)];
@@ -266,7 +267,7 @@ mod tests {
         assert_eq!(of(&[(10, 1.2), (50, 1.2)]), (None, Some(10)));
         assert_eq!(of(&[(10, 1.2), (50, 1.05)]), (Some(50), None));
         assert_eq!(of(&[]), (None, None));
-        let text = |ratios: &[AtCount]| crossover_text(NOISE, ratios, "spheres");
+        let text = |ratios: &[AtCount]| crossover_text(|_| NOISE, ratios, "spheres");
         assert_eq!(text(&[(10, 1.008), (50, 2.0)]), "between 10 and 50 spheres");
         assert!(text(&[(10, 2.0)]).starts_with("at 10 spheres, the fewest"));
         assert!(text(&[(10, 0.5)]).starts_with("not up to 10"));

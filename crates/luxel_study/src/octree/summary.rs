@@ -28,7 +28,7 @@ fn findings(on: &Runs<'_>, mixed: &Runs<'_>) -> Vec<(&'static str, String)> {
         ("Crossover: our octree becomes faster than naive", OURS),
         ("Crossover: the report's octree becomes faster than naive", REPORTS),
     ] {
-        found.push((name, crossover_text(small.noise(), &small.ratios(structure, NAIVE), "spheres")));
+        found.push((name, crossover_text(|_| small.noise(), &small.ratios(structure, NAIVE), "spheres")));
     }
     let advantage = small.ratios(OURS, NAIVE);
     if let Some((spheres, ratio)) = advantage.last() {

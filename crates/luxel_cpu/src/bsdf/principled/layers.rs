@@ -12,7 +12,7 @@ use luxel_geom::albedo::lookup;
 use luxel_geom::{Real, Vector, microfacet, optics, schlick};
 
 use super::super::Bsdf;
-use super::fresnel::{self, Dielectric};
+use super::fresnel::{self, Dielectric, Means};
 
 /// Index of the clear coat (`KHR_materials_clearcoat`).
 pub(super) const COAT_INDEX: f64 = 1.5;
@@ -126,13 +126,16 @@ impl<'a, R: Real> Layers<'a, R> {
     }
 
     fn mirrored(&self, cos: R, loss: R) -> R::Vec3 {
-        let eta = self.dielectric.eta;
-        let exact = if self.is_smooth || eta < R::ONE {
-            optics::fresnel_dielectric(cos, eta).reflectance * (R::ONE - loss)
+        let (eta, roughness, one) = (self.dielectric.eta, self.bsdf.roughness, R::ONE - loss);
+        let means = if self.is_smooth || eta < R::ONE {
+            let Means { exact, rim, .. } =
+                self.dielectric.smooth_means(cos, optics::fresnel_dielectric(cos, eta));
+            Means { one, exact: exact * one, rim: rim * one }
         } else {
-            lookup::coat_albedo(self.tables, cos, self.bsdf.roughness, eta)
+            let rim = lookup::rim_albedo(self.tables, cos, roughness);
+            Means { one, exact: lookup::coat_albedo(self.tables, cos, roughness, eta), rim }
         };
-        self.dielectric.mean(R::ONE - loss, exact)
+        self.dielectric.mean(means)
     }
 
     /// Share that single scattering at the clear part loses, for a direction on the side from which the index is `eta`.
@@ -174,14 +177,15 @@ impl<'a, R: Real> Layers<'a, R> {
                 sum + passing * R::from_f64(2.0 * cos * weight)
             });
         }
-        let loss = if self.is_smooth {
-            R::ZERO
-        } else {
-            lookup::conductor_loss_average(self.tables, self.bsdf.roughness)
-        };
         let roughness = if self.is_smooth { R::ZERO } else { self.bsdf.roughness };
-        let exact = lookup::coat_albedo_average(self.tables, roughness, self.dielectric.eta);
-        R::Vec3::splat(R::ONE) - self.dielectric.mean(R::ONE - loss, exact)
+        let loss =
+            if self.is_smooth { R::ZERO } else { lookup::conductor_loss_average(self.tables, roughness) };
+        let means = Means {
+            one: R::ONE - loss,
+            exact: lookup::coat_albedo_average(self.tables, roughness, self.dielectric.eta),
+            rim: lookup::rim_albedo_average(self.tables, roughness),
+        };
+        R::Vec3::splat(R::ONE) - self.dielectric.mean(means)
     }
 
     /// How the light comes back that single scattering loses.
@@ -215,9 +219,13 @@ impl<'a, R: Real> Layers<'a, R> {
         let eta = self.dielectric.eta;
         let is_denser_here = eta < R::ONE;
         let from_thinner = if is_denser_here { R::ONE / eta } else { eta };
-        let exact = lookup::coat_albedo_average(self.tables, R::ZERO, from_thinner);
+        let means = Means {
+            one: R::ONE,
+            exact: lookup::coat_albedo_average(self.tables, R::ZERO, from_thinner),
+            rim: lookup::rim_albedo_average(self.tables, R::ZERO),
+        };
         // η and 1/η have one reflectance head-on, so the means on both sides are tinted alike.
-        returns.through = R::Vec3::splat(R::ONE) - self.dielectric.mean(R::ONE, exact);
+        returns.through = R::Vec3::splat(R::ONE) - self.dielectric.mean(means);
         if self.is_thin {
             returns.near = lookup::conductor_loss_average(self.tables, self.bsdf.roughness);
             returns.far = returns.near;
@@ -231,8 +239,9 @@ impl<'a, R: Real> Layers<'a, R> {
         let balance = if largest > R::ZERO { returns.far / largest } else { R::ZERO };
         let spread = if is_denser_here { eta * eta } else { R::ONE };
         returns.through = returns.through * (balance * spread);
-        // No more comes back than a weaker or tinted reflection lets out.
-        let tint = self.bsdf.specular_color.min(R::Vec3::splat(R::ONE));
+        // No more comes back than a weaker or tinted reflection lets out; one that is stronger than the table's loses
+        // less at refractions.
+        let tint = self.dielectric.tint.map(|tint| if tint > R::ONE { R::ONE / tint } else { tint });
         returns.given_back = tint * (self.bsdf.specular * self.clear);
     }
 }

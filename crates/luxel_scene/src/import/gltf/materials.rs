@@ -142,6 +142,18 @@ fn tell_ignored(from: &GltfMaterial, others: &Others, ignored: &mut Ignored) {
     if others.clearcoat.as_ref().is_some_and(|clearcoat| clearcoat.clearcoat_normal_texture.is_some()) {
         ignored.add("normal textures of clear coats", "");
     }
+    if others.clearcoat.as_ref().is_some_and(|clearcoat| clearcoat.clearcoat_factor > 0.0) {
+        if from.normal_texture.is_some() {
+            ignored.add("flatness of clear coats over normal maps (the coat is bent too)", "");
+        }
+        if emission(from).max_element() > 0.0 {
+            ignored.add("dimming of emission by clear coats", "");
+        }
+    }
+    let specular = extensions(from).and_then(|extensions| extensions.specular.as_ref());
+    if specular.is_some_and(|specular| specular.specular_color_factor.0.iter().any(|&factor| factor > 1.0)) {
+        ignored.add("what specular colours are above 1", "");
+    }
     if others.glossiness.as_ref().is_some_and(|it| it.specular_glossiness_texture.is_some()) {
         ignored.add("specular-glossiness textures", "");
     }

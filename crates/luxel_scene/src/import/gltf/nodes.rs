@@ -9,6 +9,7 @@ use gltf::json::{Index, Root};
 use serde::Deserialize;
 
 use crate::components::Transform;
+use crate::limits::{MAX_ENTITIES, MAX_INSTANCES};
 
 use super::accessors::Elements;
 use super::buffers::Buffers;
@@ -17,8 +18,8 @@ use super::extensions::Ignored;
 /// The deepest tree of nodes: a scene file holds 1024 levels, of which a root and the primitives take two.
 const MAX_DEPTH: usize = 1022;
 
-/// The most entities that nodes and their instances may make: as many as a scene file holds.
-const MAX_ENTITIES: u64 = 4_000_000;
+/// What comes on top of the nodes: a root, a ground, a lamp and a camera.
+const STAGE: u64 = 4;
 
 /// A node of the scene.
 #[derive(Debug)]
@@ -48,7 +49,7 @@ pub(super) fn place(
 ) -> Result<Vec<Placed>, String> {
     let mut placed: Vec<Placed> = Vec::new();
     let mut visited = HashSet::new();
-    let mut entities = 0;
+    let mut shown: u64 = 0;
     let mut waiting: Vec<(Index<Node>, Option<usize>, usize)> =
         roots.iter().rev().map(|&node| (node, None, 1)).collect();
     while let Some((index, parent, depth)) = waiting.pop() {
@@ -62,9 +63,12 @@ pub(super) fn place(
         }
         let above = parent.and_then(|parent: usize| placed.get(parent)).map(|parent| parent.global);
         let placement = placement(root, buffers, node, number, ignored)?;
-        entities += 1 + count(root, node, &placement);
-        if entities > MAX_ENTITIES {
-            return Err(format!("makes more than {MAX_ENTITIES} instances"));
+        shown = shown.saturating_add(count(root, node, &placement));
+        if shown + STAGE > MAX_INSTANCES {
+            return Err(format!("shows meshes more than {MAX_INSTANCES} times"));
+        }
+        if shown + placed.len() as u64 + STAGE > MAX_ENTITIES {
+            return Err(format!("makes more than {MAX_ENTITIES} entities of its nodes and their meshes"));
         }
         let global = above.unwrap_or(DAffine3::IDENTITY) * placement.transform.affine();
         let me = placed.len();
@@ -173,8 +177,8 @@ fn instances(root: &Root, buffers: &Buffers, node: &Node) -> Result<Option<Vec<T
     let scales = open(instancing.attributes.scale, Type::Vec3)?;
     let lengths = [&translations, &rotations, &scales].map(|it| it.as_ref().map(Elements::len));
     let Some(count) = lengths.into_iter().flatten().min() else { return Ok(None) };
-    if count as u64 > MAX_ENTITIES {
-        return Err(format!("has {count} instances; {MAX_ENTITIES} are the most"));
+    if count as u64 > MAX_INSTANCES {
+        return Err(format!("has {count} instances; {MAX_INSTANCES} are the most"));
     }
     let vector = |from: &Option<Elements<'_>>, index, or: Vec3| {
         from.as_ref().map_or(or, |from| Vec3::from_array(from.numbers(index))).as_dvec3()

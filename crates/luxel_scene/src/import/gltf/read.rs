@@ -124,15 +124,29 @@ fn root(path: &Path, json: &[u8]) -> Result<(Root, usize), SceneError> {
     }
 }
 
-/// The file with an empty list of nodes for scenes that have none, and without its animations, which nobody looks at.
+/// The file with an empty list of nodes for scenes that have none, and without what nobody looks at: its animations, and
+/// its extras, which may be of any kind (glTF 2.0, section 3.5) but which the crate wants to be objects.
 fn completed(json: &[u8]) -> Option<(Root, usize)> {
     let mut value: Value = serde_json::from_slice(json).ok()?;
     let animations = value.as_object_mut()?.remove("animations");
     let animations = animations.and_then(|animations| Some(animations.as_array()?.len())).unwrap_or(0);
+    remove_extras(&mut value);
     for scene in value.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
         scene.as_object_mut()?.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
     }
     Some((serde_json::from_value(value).ok()?, animations))
+}
+
+/// Takes every `extras` out. No deeper than serde_json nests, so recursion is safe.
+fn remove_extras(value: &mut Value) {
+    match value {
+        Value::Object(members) => {
+            members.remove("extras");
+            members.values_mut().for_each(remove_extras);
+        }
+        Value::Array(items) => items.iter_mut().for_each(remove_extras),
+        _ => {}
+    }
 }
 
 fn syntax(path: &Path, error: &serde_json::Error) -> SceneError {

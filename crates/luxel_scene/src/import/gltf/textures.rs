@@ -16,12 +16,9 @@ use crate::assets::{AssetId, Assets, ImageAsset, ImageSource};
 use crate::textures::{Filter, TextureRef, Wrap};
 
 use super::super::file_name;
-use super::super::image::decode;
+use super::super::image::{MAX_MODEL_IMAGE_BYTES, decode};
 use super::buffers::{Buffers, resolve, short};
 use super::extensions::Ignored;
-
-/// The most bytes that the decoded images of a file may fill together: 1 GiB.
-const MAX_IMAGE_BYTES: u64 = 1 << 30;
 
 /// The images of a file that were asked for.
 #[derive(Debug)]
@@ -38,7 +35,7 @@ pub(super) struct Images<'a> {
 impl<'a> Images<'a> {
     /// None yet of those of the file at `path`.
     pub(super) fn new(path: &'a Path, root: &'a Root, buffers: &'a Buffers) -> Self {
-        Self { path, root, buffers, left: MAX_IMAGE_BYTES, known: HashMap::new(), warnings: Vec::new() }
+        Self { path, root, buffers, left: MAX_MODEL_IMAGE_BYTES, known: HashMap::new(), warnings: Vec::new() }
     }
 
     /// How many are in use.
@@ -177,11 +174,8 @@ pub(super) fn decode_image(
     };
     let by_name = image.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
     let by_name = by_name.and_then(|uri| ImageFormat::from_path(short(uri)).ok());
-    let decoded = decode(bytes, by_name).map_err(|reason| format!("{name} {reason}"))?;
+    let decoded = decode(bytes, by_name, limit).map_err(|reason| format!("{name} {reason}"))?;
     let bytes = decoded.bytes();
-    if bytes > limit {
-        return Err(format!("{name} is one too many: {} MiB are the most for all", MAX_IMAGE_BYTES >> 20));
-    }
     let (asset, warning) = decoded.into_asset(ImageSource::ModelImage(path.to_owned(), number), &name);
     Ok((asset, bytes, warning))
 }

@@ -137,7 +137,9 @@ fn bins(runs: &Runs<'_>) -> Figure {
 fn leaves(runs: &Runs<'_>) -> Figure {
     let fastest = runs.iter().min_by(|a, b| a.frame_ms.total_cmp(&b.frame_ms));
     let because = fastest.map(|best| {
-        let alike = runs.iter().filter(|run| runs.noise().faster(best.fps / run.fps) == Case::Open);
+        let of = |run: &Run| runs.filter(|other| other.leaf_size == run.leaf_size);
+        let noise = |run: &Run| runs.noise_of(&[of(best), of(run)]);
+        let alike = runs.iter().filter(|run| noise(run).faster(best.fps / run.fps) == Case::Open);
         format!(
             "The fastest frames have leaves of at most {} triangles ({} cannot be told from them).",
             best.leaf_size,

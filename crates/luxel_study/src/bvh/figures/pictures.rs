@@ -1,7 +1,7 @@
 //! Figures 6 and 8 to 13: pictures, and their frame rates.
 use super::super::plan::{BOUNCED, DIRECT, SMOOTHNESS};
 use super::super::record::{Run, Sweep};
-use super::super::select::{Runs, setting};
+use super::super::select::{Runs, SAH, setting};
 use super::{rate_text, rates};
 use crate::kit::draw::{picture, without_claim};
 use crate::kit::figure::{Figure, Part};
@@ -54,11 +54,11 @@ fn bunny(runs: &Runs<'_>) -> Figure {
     let (mut cases, mut because) = frame_rates(&bunny, BUNNY_FPS);
     let is_told = cases.iter().any(|case| *case != Case::Open);
     for (name, on) in views.by_backend() {
-        let fps = |view| on.seen_from(view).split_by("sah").fps();
-        if let (Some(near), Some(far)) = (fps("near"), fps("far")) {
+        let compared = ["near", "far"].map(|view| on.seen_from(view).split_by(SAH));
+        if let [Some(near), Some(far)] = compared.each_ref().map(Runs::fps) {
             // Half of the claim says nothing where the other half cannot be told.
             if is_told || bunny.is_empty() {
-                cases.push(on.noise().slower(near / far));
+                cases.push(on.noise_of(&compared).slower(near / far));
             }
             because +=
                 &format!("Near the bunny the {name} makes {} frames for each from afar. ", short(near / far));

@@ -42,12 +42,23 @@ fn ms(run: &Run) -> String {
     format!("{} ms", short(run.frame_ms))
 }
 
+/// What the picture would take at the report's size.
+fn minutes_text(cpu: &Run) -> String {
+    let minutes = f64::from(cpu.picture_spp) / cpu.fps_of_report() / 60.0;
+    format!(
+        "At 1920×1080 with {} samples per pixel the picture is {} minutes on this CPU, if time goes with the samples. ",
+        cpu.picture_spp,
+        short(minutes)
+    )
+}
+
 fn compared(runs: &Runs<'_>, cpu: &Run, gpu: &Run) -> Verdict {
     let ratio = gpu.fps / cpu.fps;
     // A software driver is no GPU, so it says nothing about one.
-    let is_faster = if gpu.hardware_gpu { runs.noise().faster(ratio) } else { Case::Open };
+    let is_faster = if gpu.hardware_gpu { runs.noise_of([runs]).faster(ratio) } else { Case::Open };
     let mut cases = vec![is_faster];
-    let mut because = format!("The {} makes {} the frames of the CPU. ", gpu.place(), times(ratio));
+    let mut because =
+        format!("The {} makes {} the frames of the CPU. {}", gpu.place(), times(ratio), minutes_text(cpu));
     if let (Some(a), Some(b)) = (cpu.picture_png.as_deref(), gpu.picture_png.as_deref())
         && let Some(difference) = flip(a, b)
     {

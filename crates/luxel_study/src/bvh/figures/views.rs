@@ -12,10 +12,16 @@ pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     vec![views(&runs.of(Sweep::Views)), levels(&runs.of(Sweep::Levels))]
 }
 
-/// How many times faster the heuristic's tree is than the one cut along the largest axis.
-fn advantage(on: &Runs<'_>, view: &str) -> Option<f64> {
+/// The runs with the heuristic's tree and with the one cut along the largest axis.
+fn both_splits<'a>(on: &Runs<'a>, view: &str) -> [Runs<'a>; 2] {
     let at = on.seen_from(view);
-    Some(at.split_by(SAH).fps()? / at.split_by(LARGEST_AXIS).fps()?)
+    [SAH, LARGEST_AXIS].map(|split| at.split_by(split))
+}
+
+/// How many times faster the heuristic's tree is.
+fn advantage(on: &Runs<'_>, view: &str) -> Option<f64> {
+    let [heuristic, axis] = both_splits(on, view);
+    Some(heuristic.fps()? / axis.fps()?)
 }
 
 /// How many times as many nodes and triangles a ray tests in the heuristic's tree.
@@ -30,8 +36,9 @@ fn views(runs: &Runs<'_>) -> Figure {
     for (name, on) in runs.by_backend() {
         let ratios = PLACES.map(|view| advantage(&on, view));
         if let [Some(far), _, Some(inside)] = ratios {
-            cases.push(on.noise().slower(inside));
-            cases.push(on.noise().much_faster(far / inside));
+            let (at_far, at_inside) = (both_splits(&on, "far"), both_splits(&on, "inside"));
+            cases.push(on.noise_of(&at_inside).slower(inside));
+            cases.push(on.noise_of(at_far.iter().chain(&at_inside)).much_faster(far / inside));
         }
         let said =
             PLACES.iter().zip(ratios).filter_map(|(view, ratio)| Some(format!("{} {view}", times(ratio?))));
@@ -47,8 +54,8 @@ fn views(runs: &Runs<'_>) -> Figure {
     if !runs.is_empty() {
         let corner = "speed with the heuristic against largest axis";
         parts.push(ratio_table(corner, PLACES.map(str::to_owned).to_vec(), rows));
-        parts.push(Part::Table(table(runs, &["camera", "split"], |run| {
-            vec![run.view.clone(), run.split.clone()]
+        parts.push(Part::Table(table(runs, &["camera", "split", "cost"], |run| {
+            vec![run.view.clone(), run.split.clone(), short(run.sah_cost)]
         })));
     }
     Figure {
@@ -73,12 +80,11 @@ fn views(runs: &Runs<'_>) -> Figure {
 }
 
 fn table(runs: &Runs<'_>, names: &[&str], named: impl Fn(&Run) -> Vec<String>) -> Table {
-    let rest = ["where", "cost", "nodes per ray", "tests per ray", "ms per frame", "million rays per second"];
+    let rest = ["where", "nodes per ray", "tests per ray", "ms per frame", "million rays per second"];
     let row = |run: &Run| {
         let mut cells = named(run);
         cells.extend([
             run.place().to_owned(),
-            short(run.sah_cost),
             short(run.nodes_per_ray + run.tlas_nodes_per_ray),
             short(run.tests_per_ray),
             short(run.frame_ms),
@@ -93,16 +99,17 @@ fn table(runs: &Runs<'_>, names: &[&str], named: impl Fn(&Run) -> Vec<String>) -
 fn levels(runs: &Runs<'_>) -> Figure {
     let (mut cases, mut reasons) = (Vec::new(), Vec::new());
     for (name, on) in runs.by_backend() {
-        let of =
-            |levels: &str, split: &str| on.filter(|run| run.levels == levels && run.split == split).fps();
-        if let (Some(two), Some(one)) = (of("two", SAH), of("one", SAH)) {
-            cases.push(on.noise().much_faster(two / one));
-            let axis = of("one", LARGEST_AXIS).map_or_else(String::new, |axis| {
+        let of = |levels: &str, split: &str| on.filter(|run| run.levels == levels && run.split == split);
+        let compared = ["two", "one"].map(|levels| of(levels, SAH));
+        if let [Some(two), Some(one)] = compared.each_ref().map(Runs::fps) {
+            cases.push(on.noise_of(&compared).much_faster(two / one));
+            let axis = of("one", LARGEST_AXIS).fps().map_or_else(String::new, |axis| {
                 format!(", and {} as fast as one tree cut along the largest axis", times(two / axis))
             });
             reasons.push(format!("{} on the {name}{axis}", times(two / one)));
         }
     }
+    // No cost: that of the largest mesh alone says nothing beside that of a tree over everything.
     let named = |run: &Run| vec![run.levels.clone(), run.split.clone()];
     Figure {
         number: 23,

@@ -65,7 +65,7 @@ fn crossovers(runs: &Runs<'_>) -> Figure {
     for of in ratios_of(&small, &[OURS, REPORTS, "octree-base", "bvh"], NAIVE) {
         let noise = small.on(&of.backend).noise();
         lines.push(of.line(&counts));
-        reasons += &format!("{}: {}. ", of.name(), crossover_text(noise, &of.ratios, "spheres"));
+        reasons += &format!("{}: {}. ", of.name(), crossover_text(|_| noise, &of.ratios, "spheres"));
         if of.structure == OURS {
             cases.extend(expectations(noise, &of.ratios));
         }
@@ -95,7 +95,7 @@ fn crossovers(runs: &Runs<'_>) -> Figure {
 fn expectations(noise: Noise, ratios: &[AtCount]) -> Vec<Case> {
     let from: Vec<AtCount> =
         ratios.iter().copied().filter(|(count, _)| *count >= EXPECTED_CROSSOVER).collect();
-    let wins = crossover(noise, ratios).from.is_some_and(|count| count <= EXPECTED_CROSSOVER);
+    let wins = crossover(|_| noise, ratios).from.is_some_and(|count| count <= EXPECTED_CROSSOVER);
     let mut cases = vec![Case::from(wins)];
     cases.extend(growth(noise, &from));
     cases
