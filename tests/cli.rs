@@ -464,3 +464,22 @@ fn cameras_of_one_name_are_told_apart_by_number_and_no_name_steers_the_terminal(
     let stderr = render("3").stderr;
     assert!(stderr.contains("(there is 0 'eye', 1 'eye', 2 '\\u{1b}[2J')"), "{stderr}");
 }
+
+#[test]
+fn info_lists_the_scenes_of_a_file_that_may_have_several() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = r#"{"asset": {"version": "2.0"}, "scene": 1, "nodes": [{}],
+        "scenes": [{"nodes": [0], "name": "day"}, {"nodes": [0], "name": "night\u001b"}, {"nodes": [0]}]}"#;
+    std::fs::write(folder.path().join("a.gltf"), model).unwrap();
+    let info = |more: &[&str]| run(luxel(folder.path()).args(["info", "a.gltf"]).args(more)).succeeded();
+    let text = info(&[]);
+    let listed = "scenes\n  0 'day'\n  1 'night\\u{1b}' (default, shown)\n  2 ''\ncameras";
+    assert!(text.contains(listed), "{text}");
+    let text = info(&["--scene", "2"]);
+    assert!(text.contains("1 'night\\u{1b}' (default)\n  2 '' (shown)\n"), "{text}");
+    let scenes = json(&info(&["--json"]))["scenes"].clone();
+    assert_eq!(scenes[0], serde_json::json!({"name": "day", "is_default": false, "is_shown": false}));
+    assert_eq!((&scenes[1]["is_shown"], &scenes[2]["name"]), (&true.into(), &Value::Null));
+    let other = run(luxel(folder.path()).arg("info").arg(asset("empty.ron"))).succeeded();
+    assert!(!other.contains("scenes\n"), "a scene file is one scene: {other}");
+}

@@ -1,6 +1,6 @@
 //! A world under random edits, and what each edit must cost.
 use bevy_ecs::prelude::*;
-use glam::{DQuat, DVec3, Vec3};
+use glam::{DQuat, DVec3, Quat, Vec3};
 use luxel_bake::{BakeCounters, Baker};
 use luxel_scene::{
     ActiveCamera, AssetId, Assets, Camera, Material, MeshAsset, MeshInstance, MeshSource, RenderSettings,
@@ -27,6 +27,8 @@ pub(crate) enum Action {
     Move,
     Scale,
     Material,
+    /// The corners of a mesh move, for all that show it.
+    Deform,
 }
 
 /// An edit, and the work that it must cause, without what follows from the snapshots and from the spheres' root cell
@@ -85,6 +87,21 @@ impl Studio {
         }
     }
 
+    /// More of everything than there ever is at once: every asset shown, and as many of each kind as there may be.
+    pub(crate) fn full(seed: u32) -> Self {
+        let mut studio = Self::new(seed);
+        for kind in [Kind::Sphere, Kind::Mesh, Kind::Volume] {
+            let all = [studio.meshes.clone(), studio.volumes.clone()].concat();
+            let of_kind = |id: &&AssetId| (kind == Kind::Mesh) == studio.meshes.contains(id);
+            let assets: Vec<AssetId> = all.iter().filter(of_kind).copied().collect();
+            let is_unused = |studio: &Self| assets.iter().any(|id| studio.users(Some(*id)) == 0);
+            while studio.count(kind) < most(kind) || (kind != Kind::Sphere && is_unused(&studio)) {
+                studio.add(kind);
+            }
+        }
+        studio
+    }
+
     /// Does something to something.
     pub(crate) fn edit(&mut self) -> Edit {
         self.edits += 1;
@@ -100,6 +117,7 @@ impl Studio {
                 Action::Remove => self.remove(index),
                 Action::Move => self.shift(self.objects[index].entity),
                 Action::Scale => self.scale(self.objects[index]),
+                Action::Deform => self.deform(self.objects[index]),
                 _ => self.paint(self.objects[index]),
             }
         };
@@ -139,13 +157,14 @@ impl Studio {
     /// In every other phase more is added than removed, in the others less, so that each kind comes to its most
     /// and dies out again; the last phase grows.
     fn action(&mut self, kind: Kind) -> Action {
-        let (count, most) = (self.count(kind), if kind == Kind::Sphere { 300 } else { 40 });
+        let (count, most) = (self.count(kind), most(kind));
         let grows = (self.edits - 1) / PHASE % 2 == 1;
         let action = match (self.random.below(10), grows) {
             (0..3, true) | (0, false) => Action::Add,
             (3, true) | (1..4, false) => Action::Remove,
             (4..6, _) => Action::Move,
             (6..8, _) => Action::Scale,
+            (8, _) if kind == Kind::Mesh => Action::Deform,
             _ => Action::Material,
         };
         match action {
@@ -231,6 +250,37 @@ impl Studio {
         BakeCounters { materials_written: records, ..BakeCounters::default() }
     }
 
+    /// Other places for the corners of a mesh: a twist, a tremor, a heap, or where they came from. Deformations add up;
+    /// what becomes of the tree, the bake's counters say.
+    fn deform(&mut self, object: Object) -> BakeCounters {
+        let id = object.asset.unwrap();
+        let mut asset = MeshAsset::clone(self.world.resource::<Assets>().mesh(id).unwrap());
+        let reach = asset.mesh.positions.iter().fold(0.0f32, |most, p| most.max(p.abs().max_element()));
+        let random = &mut self.random;
+        let positions = &mut asset.mesh.positions;
+        match random.below(4) {
+            0 => asset = MeshAsset::from_source(asset.source).unwrap(),
+            1 => {
+                let turn = random.between(-2.0, 2.0) / reach;
+                let shape = Vec3::ONE + random.point(0.4);
+                positions.iter_mut().for_each(|p| *p = Quat::from_rotation_y(p.y * turn) * *p * shape);
+            }
+            2 => positions.iter_mut().for_each(|p| *p += random.point(0.02 * reach)),
+            _ => positions.iter_mut().for_each(|p| *p += random.point(reach)),
+        }
+        self.world.resource_mut::<Assets>().replace_mesh(id, asset).unwrap();
+        BakeCounters::default()
+    }
+
+    /// Gives every mesh the shape that a scene file keeps: that of its source.
+    pub(crate) fn restore_shapes(&mut self) {
+        let mut assets = self.world.resource_mut::<Assets>();
+        for id in &self.meshes {
+            let source = assets.mesh(*id).unwrap().source.clone();
+            assets.replace_mesh(*id, MeshAsset::from_source(source).unwrap()).unwrap();
+        }
+    }
+
     /// An asset, and the cost of showing it: its structure is built for its first user.
     fn pick_asset(
         &mut self,
@@ -288,6 +338,11 @@ impl Studio {
         };
         Material { emission, ..surface.into() }
     }
+}
+
+/// Objects of a kind that may be there at once.
+fn most(kind: Kind) -> usize {
+    if kind == Kind::Sphere { 300 } else { 40 }
 }
 
 /// At most 320 triangles each; two recipes twice, so that equal content under two ids is there too.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use luxel_cpu::medium::met_by;
 use luxel_cpu::surface::Surface as Met;
 use luxel_cpu::{CpuTracer, PathState, shade, traverse};
 use luxel_engine::Engine;
@@ -152,6 +153,7 @@ fn passed(scene: &FlatScene, ray: Ray<f64>) -> (DVec3, DVec3) {
         let mut path = PathState::<f64>::start(0, sample, ray);
         while let Some(hit) = traverse::intersect(scene, &path.ray, &path.exclusion, counters) {
             let surface = Met::at(scene, scene.features, &path.ray, &hit, counters);
+            let surface = met_by(scene, scene.features, &path, &surface);
             let inwards = path.ray.direction.dot(surface.place.normal);
             shade::shade(scene, scene.features, &mut path, Some((&hit, &surface)), counters);
             assert!(path.alive);

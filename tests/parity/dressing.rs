@@ -1,12 +1,16 @@
 //! Cases of what a surface carries: textures, attributes of corners, normal maps, holes and see-through places.
 use glam::{Vec2, Vec3};
 use luxel_cpu::hit::PrimitiveHit;
-use luxel_cpu::surface::{Surface, attributes};
+use luxel_cpu::surface::{Surface, attributes, roles};
 use luxel_cpu::{Hit, alpha, texture};
-use luxel_flat::{Counters, FeatureSet, INSTANCE_ATTRIBUTES, Instance, KIND_MESH, TEXTURE_SRGB, TextureSlot};
+use luxel_flat::{
+    Counters, FeatureSet, INSTANCE_ATTRIBUTES, Instance, KIND_MESH, TEXTURE_ROLE_NORMAL, TEXTURE_SRGB,
+    TEXTURE_UV1, TextureSlot,
+};
 use luxel_geom::{Affine, Ray, rng};
 use luxel_testkit::Random;
 
+use crate::bounds::SRGB;
 use crate::cases::{Case, xyz};
 use crate::inputs::{input, unit};
 use crate::judge::{Expected, Input};
@@ -44,14 +48,47 @@ fn slot(i: &Input) -> TextureSlot {
     TextureSlot { row_u, texel_first, row_v, size, flags, ..TextureSlot::default() }
 }
 
-/// The error of a texel is that of its decoding; coordinates move by 16 u of their terms, and the texture's value by as
-/// many steps between texels as they move.
-fn texture_scale(slot: &TextureSlot, [u, v]: [f32; 2]) -> f32 {
-    let terms = |row: [f32; 3]| (row[0] * u).abs() + (row[1] * v).abs() + row[2].abs() + 1.0;
-    let across = terms(slot.row_u) * (slot.size & 0xffff) as f32;
-    let down = terms(slot.row_v) * (slot.size >> 16) as f32;
-    let decoded = if slot.flags & TEXTURE_SRGB == 0 { 0.0 } else { 1.0 };
-    decoded + (across + down) / 16.0
+/// Errors of [`texture::sample_texture`] in u, both sides together, for coordinates that are wrong by `given` u. A texel's
+/// is that of unpacking (3 ulp) and, for sRGB, of decoding (14u of what was unpacked, and [`SRGB`]); mixing four takes 14u in
+/// WGSL and 7u in Rust. A coordinate is a scalar product (6u + 3u of its terms), brought into a period and to a texel in
+/// four steps (8u + 4u of one), and the value moves by no more than one for each texel that it is off.
+fn texture_errors(slot: &TextureSlot, [u, v]: [f32; 2], given: f32) -> f32 {
+    let off = |row: [f32; 3]| {
+        let terms = (row[0] * u).abs() + (row[1] * v).abs() + row[2].abs();
+        9.0 * terms + (row[0].abs() + row[1].abs()) * given + 12.0
+    };
+    let across = off(slot.row_u) * (slot.size & 0xffff) as f32;
+    let down = off(slot.row_v) * (slot.size >> 16) as f32;
+    let decoded = if slot.flags & TEXTURE_SRGB == 0 { 6.0 } else { 14.0 + SRGB };
+    decoded + 21.0 + across + down
+}
+
+/// The largest of the errors of a place's textures in u; those of its normal map apart. The coordinates are three products
+/// with weights (4u) and their sum: 10u + 5u of the largest corner's.
+fn texture_errors_at(i: &Input, role: impl Fn(u32) -> bool) -> f32 {
+    let material = &SCENE.materials.as_slice()[hit(i).material as usize];
+    let record = attributes::record(&SCENE, instance(i), i.code[1]).unwrap();
+    let uvs = attributes::texture_coordinates::<f32>(record, hit(i).uv);
+    let corners = record.uv0.iter().chain(&record.uv1).flatten();
+    let given = 15.0 * corners.fold(0.0f32, |most, coordinate| most.max(coordinate.abs()));
+    let bits = (0..32).map(|bit| 1 << bit).filter(|bit| material.texture_mask & bit != 0 && role(*bit));
+    let slots = bits.filter_map(|bit| roles::slot(&SCENE, material, bit));
+    let errors =
+        slots.map(|slot| texture_errors(slot, uvs[usize::from(slot.flags & TEXTURE_UV1 != 0)], given));
+    errors.fold(0.0, f32::max)
+}
+
+/// Errors of a surface's shading normal in u, both sides together. The interpolated one, its tangent and its bitangent are
+/// decoded, summed, transformed and scaled to length one: 150u. A normal map's texel is off by what textures are, twice,
+/// in each of three. Where the normal is bent so that the view's mirror is above the surface, the error is in parts of
+/// the length of the half vector, twice the cosine of view and normal.
+fn normal_errors(i: &Input, s: &Surface<f32>) -> f32 {
+    let map = texture_errors_at(i, |role| role == TEXTURE_ROLE_NORMAL);
+    let (wo, n) = (-xyz(i.b), s.shading_normal);
+    let mirrored = n * (2.0 * wo.dot(n)) - wo;
+    let is_bent = (mirrored.dot(s.place.normal) * wo.dot(s.place.normal).signum()) < 0.011;
+    let size = if is_bent { 2.0 * wo.dot(n).abs() } else { 1.0 };
+    (150.0 + 6.0 * map) / size.clamp(1e-6, 1.0)
 }
 
 /// A place on one of the balls: instance and triangle in `code`, weights in `b` and `c`, the ray in `a` and `b`.
@@ -116,19 +153,27 @@ fn surface_part(i: &Input) -> Expected {
     let ray = Ray::new(xyz(i.a), xyz(i.b));
     let hit = Hit { instance: i.code[0], instance_id: instance(i).stable_id, on: hit(i) };
     let s = Surface::at(&SCENE, FeatureSet::ALL, &ray, &hit, &mut Counters::default());
-    let key = 1 + s.bsdf.kind + 8 * s.material + 4096 * s.light.wrapping_add(1);
+    let key = 1 + s.bsdf.kind + 8 * s.body + 4096 * s.light.wrapping_add(1);
     let reach = s.place.point.abs().max_element() + 1.0;
+    // A texture times a corner's colour (24u, interpolated) and the material's: at most one, so shares of one.
+    let textured = texture_errors_at(i, |role| role != TEXTURE_ROLE_NORMAL) + 32.0;
+    let of = |values: [f32; 4]| Expected::scaled(key, values, textured);
     match i.code[2] {
+        // As triangle_point_inside and transform_point.
         0 => Expected {
             key,
             values: s.place.point.extend(s.place.error.x).to_array(),
-            scale: [reach, reach, reach, s.place.error.x],
+            scale: [reach, reach, reach, s.place.error.x].map(|size| 96.0 * size),
         },
-        1 => Expected::scaled(key, s.shading_normal.extend(s.bsdf.roughness).to_array(), 1.0),
-        2 => Expected::scaled(key, s.bsdf.color.extend(s.bsdf.metallic).to_array(), 1.0),
-        3 => Expected::scaled(key, s.emission.extend(s.bsdf.transmission).to_array(), 1.0),
-        4 => Expected::scaled(key, s.bsdf.specular_color.extend(s.bsdf.specular).to_array(), 1.0),
-        _ => Expected::scaled(key, [s.bsdf.ior, s.bsdf.clearcoat, s.bsdf.clearcoat_roughness, 0.0], 1.0),
+        1 => {
+            let bent = normal_errors(i, &s);
+            let values = s.shading_normal.extend(s.bsdf.roughness).to_array();
+            Expected { key, values, scale: [bent, bent, bent, textured] }
+        }
+        2 => of(s.bsdf.color.extend(s.bsdf.metallic).to_array()),
+        3 => of(s.emission.extend(s.bsdf.transmission).to_array()),
+        4 => of(s.bsdf.specular_color.extend(s.bsdf.specular).to_array()),
+        _ => of([s.bsdf.ior, s.bsdf.clearcoat, s.bsdf.clearcoat_roughness, 0.0]),
     }
 }
 
@@ -142,8 +187,8 @@ pub(crate) static CASES: [Case; 4] = [
             let [u0, v0, u1, v1] = i.a;
             let (slot, uv) = (slot(i), [[u0, v0], [u1, v1]]);
             let texel = texture::sample_texture::<f32>(&SCENE, &slot, &uv, &mut Counters::default());
-            let set = usize::from(slot.flags & luxel_flat::TEXTURE_UV1 != 0);
-            Expected::scaled(1, texel, texture_scale(&slot, uv[set]))
+            let set = usize::from(slot.flags & TEXTURE_UV1 != 0);
+            Expected::scaled(1, texel, texture_errors(&slot, uv[set], 0.0))
         },
         make: textured,
     },
@@ -175,7 +220,7 @@ pub(crate) static CASES: [Case; 4] = [
             let parts = array<vec4f, 6>(vec4f(s.point, s.error.x), vec4f(s.shading_normal, s.roughness),
                 vec4f(s.color, s.metallic), vec4f(s.emission, s.transmission), vec4f(s.specular_color, s.specular),
                 vec4f(s.ior, s.clearcoat, s.clearcoat_roughness, 0.0));
-            return give(parts[in.code.z], 1u + s.kind + 8u * s.material + 4096u * (s.light + 1u));",
+            return give(parts[in.code.z], 1u + s.kind + 8u * s.body + 4096u * (s.light + 1u));",
         twin: surface_part,
         make: place,
     },

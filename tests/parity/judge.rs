@@ -147,7 +147,7 @@ fn error(found: &Output, expected: &Expected) -> f32 {
 /// found, up to their spread and the forward bound.
 fn is_explained(case: &Case, bound: &Bound, call: &Call) -> bool {
     let mut random = Random::new(1);
-    let jittered = |_| (case.twin)(&jitter(&call.input, bound.backward * U, &mut random));
+    let jittered = |_| (case.twin)(&(bound.near)(&call.input, bound.backward * U, &mut random));
     let alike: Vec<Expected> = (0..JITTERS).map(jittered).filter(|e| e.key == call.found.key).collect();
     let within = |k: usize| {
         let lo = alike.iter().map(|e| e.values[k]).fold(f32::MAX, f32::min);
@@ -158,10 +158,16 @@ fn is_explained(case: &Case, bound: &Bound, call: &Call) -> bool {
     !alike.is_empty() && (call.found.key == 0 || (0..4).all(within))
 }
 
-fn jitter(input: &Input, by: f32, random: &mut Random) -> Input {
+/// Every number of an input wrong by up to a share of itself.
+pub(crate) fn jitter(input: &Input, by: f32, random: &mut Random) -> Input {
     let mut near = *input;
     for number in [&mut near.a, &mut near.b, &mut near.c, &mut near.d].into_iter().flatten() {
-        *number *= 1.0 + by * [0.0, 1.0, -1.0, random.between(-1.0, 1.0)][random.below(4) as usize];
+        *number *= 1.0 + by * sway(random);
     }
     near
+}
+
+/// A number from −1 to 1, often one of them or zero.
+pub(crate) fn sway(random: &mut Random) -> f32 {
+    [0.0, 1.0, -1.0, random.between(-1.0, 1.0)][random.below(4) as usize]
 }

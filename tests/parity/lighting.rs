@@ -1,14 +1,17 @@
 //! Cases of light: which light is picked, how each kind is sampled, and what arrives from outside the scene.
-use glam::Vec3;
+use std::f32::consts::{PI, TAU};
+
+use glam::{DVec3, Vec3};
 use luxel_cpu::lights::{self, Receiver};
 use luxel_cpu::sky;
 use luxel_flat::{Counters, FeatureSet, LIGHT_TRIANGLE};
-use luxel_geom::octahedral;
+use luxel_geom::{equirect, octahedral};
 use luxel_testkit::Random;
 
+use crate::bounds::ATAN2;
 use crate::cases::{Case, xyz};
 use crate::inputs::{input, unit};
-use crate::judge::{Expected, Input};
+use crate::judge::{Expected, Input, sway};
 use crate::scene::SCENE;
 
 const NOTHING: (Vec3, f32) = (Vec3::ZERO, 0.0);
@@ -57,13 +60,56 @@ fn sky_direction(r: &mut Random) -> Input {
     input([(direction, pdf), NOTHING, NOTHING, NOTHING])
 }
 
-/// A direction that is wrong by 1 moves the place in the picture by so many texels, each as bright as the brightest.
-fn step_between_texels() -> f32 {
+/// What a direction's azimuth and polar angle may be wrong by, in u, both sides together: it is turned into the picture
+/// with two products and a sum (6u + 3u, 13u across), in parts of its level length for the azimuth; that length takes 15u
+/// more for the polar angle; and WGSL's atan2 is wrong by a share of the angle.
+fn angle_errors(direction: Vec3) -> [f32; 2] {
+    let level = direction.x.hypot(direction.z);
+    [ATAN2 * PI + 13.0 / level, ATAN2 * level.atan2(direction.y) + 28.0]
+}
+
+/// The direction turned by no more than its angles may be wrong by: over a sun's rim, or over the border of a cell.
+pub(crate) fn turned(i: &Input, by: f32, random: &mut Random) -> Input {
+    let direction = xyz(i.a);
+    let [azimuth, polar] = angle_errors(direction).map(|error| f64::from(by * error * sway(random)));
+    let (level, height) = (f64::from(direction.x).hypot(direction.z.into()), f64::from(direction.y));
+    let (sine, cosine) = (level.atan2(height) + polar).sin_cos();
+    let (x, z) = (f64::from(direction.x).atan2(direction.z.into()) + azimuth).sin_cos();
+    let turned = DVec3::new(sine * x, cosine, sine * z).as_vec3();
+    Input { a: turned.extend(i.a[3]).to_array(), ..*i }
+}
+
+/// The largest differences of texels that are neighbours, across and down, around a direction's place.
+fn steps_near(direction: Vec3) -> [Vec3; 2] {
     let params = &SCENE.params;
-    let texels =
-        &SCENE.environment.as_slice()[..(params.environment_width * params.environment_height) as usize];
-    let brightest = texels.iter().flat_map(|texel| &texel[..3]).fold(0.0f32, |most, value| most.max(*value));
-    params.environment_strength * brightest
+    let (cos, sin) = (params.environment_cos, params.environment_sin);
+    let (x, z) = (cos * direction.x - sin * direction.z, sin * direction.x + cos * direction.z);
+    let (u, v) = equirect::direction_to_equirect::<f32>(Vec3::new(x, direction.y, z));
+    let [width, height] = [params.environment_width, params.environment_height].map(|size| size as i32);
+    let corner = [(u * width as f32 - 0.5).floor() as i32, (v * height as f32 - 0.5).floor() as i32];
+    let texel = |column: i32, row: i32| {
+        let index = row.clamp(0, height - 1) * width + column.rem_euclid(width);
+        Vec3::from_slice(&SCENE.environment.as_slice()[index as usize][..3])
+    };
+    let around = (-1..=2).flat_map(|down| (-1..=2).map(move |across| (across, down)));
+    around.fold([Vec3::ZERO; 2], |[across, down], (i, j)| {
+        let (column, row) = (corner[0] + i, corner[1] + j);
+        let here = texel(column, row);
+        [across.max((texel(column + 1, row) - here).abs()), down.max((texel(column, row + 1) - here).abs())]
+    })
+}
+
+/// Errors of [`sky::gather`] in u, both sides together. All terms are positive, so theirs are shares of the result: a weight
+/// is a density (13u), a quotient (18u), its square (38u), a sum (21u of it) and a quotient (64u, in Rust 22u), and light is
+/// two mixtures, two products and a sum of three (22u + 11u). The place in the picture is off by its angles and 8u, and the
+/// light by that many steps between texels.
+fn sky_errors(direction: Vec3, light: Vec3) -> Vec3 {
+    let params = &SCENE.params;
+    let [azimuth, polar] = angle_errors(direction);
+    let across = params.environment_width as f32 * (azimuth / TAU + 8.0);
+    let down = params.environment_height as f32 * (polar / PI + 8.0);
+    let [step_across, step_down] = steps_near(direction);
+    light * 128.0 + (step_across * across + step_down * down) * params.environment_strength
 }
 
 pub(crate) static CASES: [Case; 4] = [
@@ -122,7 +168,8 @@ pub(crate) static CASES: [Case; 4] = [
         twin: |i| {
             let (direction, counters) = (xyz(i.a), &mut Counters::default());
             let light = sky::gather(&SCENE, FeatureSet::ALL, direction, i.a[3], counters);
-            Expected::scaled(1, light.extend(0.0).to_array(), light.max_element() + step_between_texels())
+            let scale = sky_errors(direction, light).extend(0.0).to_array();
+            Expected { key: 1, values: light.extend(0.0).to_array(), scale }
         },
         make: sky_direction,
     },

@@ -171,14 +171,16 @@ pub(crate) static CASES: [Case; 10] = [
         make: table_place,
     },
     Case {
-        function: "coat_albedo",
-        imports: "import package::geom::albedo::{coat_albedo, coat_albedo_average, rim_albedo, rim_albedo_average};",
-        body: "return give(vec4f(coat_albedo(in.a.x, in.a.y, in.a.z), coat_albedo_average(in.a.y, in.a.z),
+        function: "mean_reflectance",
+        imports: "import package::geom::albedo::{
+                coat_passing_average, mean_reflectance, rim_albedo, rim_albedo_average
+            };",
+        body: "return give(vec4f(mean_reflectance(in.a.x, in.a.y, in.a.z), coat_passing_average(in.a.y, in.a.z),
                 rim_albedo(in.a.x, in.a.y), rim_albedo_average(in.a.y)), 1u);",
         twin: |i| {
             let [cos, roughness, eta, _] = i.a;
-            let own = lookup::coat_albedo(&TABLES, cos, roughness, eta);
-            let mean = lookup::coat_albedo_average(&TABLES, roughness, eta);
+            let own = lookup::mean_reflectance(&TABLES, cos, roughness, eta);
+            let mean = lookup::coat_passing_average(&TABLES, roughness, eta);
             let rim = lookup::rim_albedo(&TABLES, cos, roughness);
             Expected::scaled(1, [own, mean, rim, lookup::rim_albedo_average(&TABLES, roughness)], 1.0)
         },

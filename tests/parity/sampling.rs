@@ -8,6 +8,8 @@ use crate::inputs::{input, point, size, unit};
 use crate::judge::{Expected, Input};
 
 const NOTHING: (Vec3, f32) = (Vec3::ZERO, 0.0);
+/// Lengths below this say nothing.
+const UNIT: f32 = crate::judge::U;
 
 /// A sphere seen from nearby, from far away or from inside, and a point of the square.
 fn sphere(r: &mut Random) -> Input {
@@ -15,6 +17,21 @@ fn sphere(r: &mut Random) -> Input {
     let away = [r.log_between(1e-3, 0.99), r.log_between(1.01, 10.0), r.log_between(1.0, 1e6)];
     let to_center = unit(r) * radius * away[r.below(3) as usize];
     Input { b: square(r).a, ..input([(to_center, radius), NOTHING, NOTHING, NOTHING]) }
+}
+
+/// Errors of [`normal_guard::valid_shading_normal`] in u, both sides together. The cosines are scalar products of unit
+/// vectors (6u + 3u); so are the level parts wrong by 15u, and their sum `level` by 36u of the factors and, as the factors
+/// are cosines, by 27u. Scaled to length one (30u, with the root and the part along `ng` 60u) that is in parts of the
+/// length of `level`, and the half vector in parts of its own length, scaled with another 30u. A normal that is not
+/// bent is exact.
+fn guard_errors(ng: Vec3, ns: Vec3, wo: Vec3) -> f32 {
+    let (cos_view, upright) = (wo.dot(ng), ns.dot(ng).max(0.0));
+    let least = (0.9 * cos_view).min(0.01);
+    let level = (ns - ng * ns.dot(ng)) * (least + cos_view) - (wo - ng * cos_view) * upright;
+    let half = wo + level.normalize_or_zero() * (1.0 - least * least).sqrt() + ng * least;
+    let of_level = 27.0 + 36.0 * (least + cos_view + upright);
+    let largest = 1.0 / UNIT;
+    30.0 + ((60.0 + of_level / level.length().max(UNIT)) / half.length().max(UNIT)).min(largest)
 }
 
 fn any_word(r: &mut Random) -> Input {
@@ -134,8 +151,10 @@ pub(crate) static CASES: [Case; 10] = [
         imports: "import package::geom::normal_guard::valid_shading_normal;",
         body: "return give(vec4f(valid_shading_normal(in.a.xyz, in.b.xyz, in.c.xyz), 0.0), 1u);",
         twin: |i| {
-            let n = normal_guard::valid_shading_normal::<f32>(xyz(i.a), xyz(i.b), xyz(i.c));
-            Expected::scaled(1, n.extend(0.0).to_array(), 1.0)
+            let [ng, ns, wo] = [i.a, i.b, i.c].map(xyz);
+            let n = normal_guard::valid_shading_normal::<f32>(ng, ns, wo);
+            let errors = if n == ns || n == ng { 0.0 } else { guard_errors(ng, ns, wo) };
+            Expected::scaled(1, n.extend(0.0).to_array(), errors)
         },
         make: |r| {
             let (ng, wo) = (unit(r), unit(r));

@@ -9,9 +9,10 @@ use luxel_geom::albedo::TABLES;
 use luxel_geom::{triangle, warp};
 use luxel_testkit::Random;
 
+use crate::bounds::SINE;
 use crate::cases::{Case, square, xyz};
 use crate::inputs::{input, point, size, unit};
-use crate::judge::{Expected, Input};
+use crate::judge::{Expected, Input, U};
 
 /// A triangle of some size anywhere; the weights of a point of it, often on an edge; and a drift.
 fn triangle_place(r: &mut Random) -> Input {
@@ -113,6 +114,19 @@ fn scattering_place(r: &mut Random) -> Input {
     Input { a, b, c: given.c, d: [d[0], normal.x, normal.y, normal.z], code: words }
 }
 
+/// Errors of [`warp::level_hemisphere`] in u, both sides together: of x and y, and of z. The logarithm is wrong by 6u and
+/// its argument by 9u, so the exponent x by 29u of itself; exp by (6 + 4x)u; so the square of the cosine by
+/// w²((33x + 7)eˣ + 3) and 6u of itself. Roots of numbers that are d apart are apart by √d at most, and by d in parts of the
+/// root. The angle adds WGSL's sin and cos and 20u.
+fn level_errors(width: f32, u0: f32, direction: Vec3) -> [f32; 2] {
+    let square = width * width;
+    let exponent = u0 * (1.0 + 1.0 / square).ln();
+    let off = square * ((33.0 * exponent + 7.0) * exponent.exp() + 3.0) + 6.0 * direction.z * direction.z;
+    let of_root = |root: f32| 12.0 + (off / root.max(f32::MIN_POSITIVE)).min((off / U).sqrt());
+    let sine = direction.truncate().length();
+    [of_root(sine) + (SINE + 20.0) * sine, of_root(direction.z)]
+}
+
 pub(crate) static CASES: [Case; 5] = [
     Case {
         function: "area_normal",
@@ -145,7 +159,10 @@ pub(crate) static CASES: [Case; 5] = [
         twin: |i| {
             let v: Vec3 = warp::level_hemisphere(i.b[3], i.a[0], i.a[1]);
             let pdf = warp::level_hemisphere_pdf(i.b[3], i.c[3]);
-            Expected { key: 1, values: v.extend(pdf).to_array(), scale: [1.0, 1.0, 1.0, pdf] }
+            let [level, upright] = level_errors(i.b[3], i.a[0], v);
+            // Nine operations, two of them on the logarithm.
+            let scale = [level, level, upright, 64.0 * pdf];
+            Expected { key: 1, values: v.extend(pdf).to_array(), scale }
         },
         make: |r| {
             let (width, cos) = (r.log_between(1e-3, 1.0), r.log_between(1e-6, 1.0));

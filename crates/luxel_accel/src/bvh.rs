@@ -37,6 +37,7 @@ use luxel_flat::{BvhNode, LEAF_COUNT_SHIFT};
 use luxel_geom::Aabb;
 
 use crate::AccelError;
+pub(crate) use cost::floor_cost;
 pub use cost::sah_cost;
 use linked::LinkedTree;
 pub use options::{BvhOptions, BvhQuality, BvhSplit, MAX_BINS, Reinsertion};

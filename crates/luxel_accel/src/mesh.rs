@@ -4,7 +4,7 @@ use luxel_flat::{BvhNode, FAR, Triangle};
 use luxel_geom::{Aabb, triangle};
 use rayon::prelude::*;
 
-use crate::bvh::validate_tree;
+use crate::bvh::{floor_cost, validate_tree};
 use crate::{AccelError, BvhOptions, build_bvh, sah_cost};
 
 /// A mesh ready to be placed in the flat scene.
@@ -20,6 +20,8 @@ pub struct MeshBvh {
     pub order: Vec<u32>,
     /// [`sah_cost`] of the tree as built.
     pub built_cost: f64,
+    /// What of that no tree over these triangles could save: the cost of testing each where a ray meets its own box.
+    pub built_floor: f64,
 }
 
 /// What a refit made of a tree.
@@ -27,22 +29,24 @@ pub struct MeshBvh {
 pub struct Refit {
     /// [`sah_cost`] now.
     pub cost: f64,
+    /// What of that no tree could save.
+    pub floor: f64,
     /// [`sah_cost`] of the tree as it was built.
     pub built_cost: f64,
-    /// Number of triangles.
-    pub triangle_count: u32,
+    /// What of that no tree could have saved.
+    pub built_floor: f64,
 }
 
-/// A refitted tree that costs more than this many times what it cost when built is worth building anew: tracing it
-/// costs about as much more, and a build about as much as tracing one ray per ten triangles.
+/// A refitted tree whose nodes cost more than this many times what they cost when built, beyond what no tree can save, is
+/// worth building anew: tracing it costs about as much more, and a build about as much as tracing one ray per ten
+/// triangles.
 pub const REBUILD_RATIO: f64 = 1.3;
 
-/// Trees over surfaces cost less than this for each doubling of their number of triangles. One that cost more when built was
-/// built over something else (a point, a line, a crumpled heap), and its cost says nothing about other shapes.
-const SURFACE_COST_PER_DOUBLING: f64 = 8.0;
-
-/// Share by which the cost of such a tree may change, up or down: then the shape has not.
-const SAME_SHAPE: f64 = 0.05;
+/// Where what no tree can save is by more than this another than when the tree was built, up or down, the triangles fill
+/// their box in another way (a heap that was a surface, a point that unfolds), and what a tree cost over them then says
+/// nothing about what one could cost now. Refits that stay between cost at most 1.5 times what a build would cost
+/// (`e01` in `tests/quality.rs`).
+const SAME_SHAPE: f64 = 1.5;
 
 /// Builds the tree of a mesh. `ids[i]` is what a hit on `triangles[i]` reports.
 ///
@@ -61,6 +65,7 @@ pub fn build_mesh(
     let in_slot = |(slot, &index): (usize, &u32)| Triangle { light: slot as u32, ..records[index as usize] };
     Ok(MeshBvh {
         bounds: root_bounds(&bvh.nodes),
+        built_floor: bvh.nodes.first().map_or(0.0, |root| floor_cost(root, boxes.iter().copied())),
         triangles: bvh.order.par_iter().enumerate().map(in_slot).collect(),
         order: bvh.order,
         built_cost: sah_cost(&bvh.nodes),
@@ -122,10 +127,12 @@ impl MeshBvh {
             self.triangles.par_iter().zip(&self.order).map(moved).collect::<Result<_, AccelError>>()?;
         self.refit_boxes();
         self.bounds = root_bounds(&self.nodes);
+        let floor = |root: &BvhNode| floor_cost(root, self.triangles.iter().map(bounds));
         Ok(Refit {
             cost: sah_cost(&self.nodes),
+            floor: self.nodes.first().map_or(0.0, floor),
             built_cost: self.built_cost,
-            triangle_count: self.triangles.len() as u32,
+            built_floor: self.built_floor,
         })
     }
 
@@ -149,12 +156,9 @@ impl MeshBvh {
 impl Refit {
     /// True if a tree built anew would save more than it costs.
     pub fn is_rebuild_due(&self) -> bool {
-        let doublings = f64::from(self.triangle_count + 1).log2();
-        if self.built_cost <= SURFACE_COST_PER_DOUBLING * doublings {
-            self.cost > REBUILD_RATIO * self.built_cost
-        } else {
-            (self.cost - self.built_cost).abs() > SAME_SHAPE * self.built_cost
-        }
+        let is_other_shape =
+            self.floor > SAME_SHAPE * self.built_floor || self.built_floor > SAME_SHAPE * self.floor;
+        is_other_shape || self.cost - self.floor > REBUILD_RATIO * (self.built_cost - self.built_floor)
     }
 }
 

@@ -1,12 +1,12 @@
 //! Presets, costs and refits of trees.
 #![allow(clippy::unwrap_used)]
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use luxel_accel::{
     BvhOptions, BvhQuality, BvhSplit, MAX_BVH_DEPTH, MeshBvh, Reinsertion, build_bvh, build_mesh, depth,
     sah_cost,
 };
 use luxel_geom::Aabb;
-use luxel_testkit::{Random, TestMesh, meshes, spheres};
+use luxel_testkit::{Random, TestMesh, closed, meshes, spheres};
 
 fn build(mesh: &TestMesh, options: &BvhOptions) -> MeshBvh {
     let built = build_mesh(&mesh.positions, &mesh.triangles, &mesh.ids(), options).unwrap();
@@ -144,6 +144,55 @@ fn what_unfolds_from_a_shape_that_says_nothing_is_built_anew() {
     for start in [mesh.map(|p| p * Vec3::X), mesh.map(|_| Vec3::ONE), crumpled] {
         let mut built = build(&start, &BvhOptions::default());
         assert!(built.refit(&mesh.positions, &mesh.triangles).unwrap().is_rebuild_due());
+    }
+}
+
+/// Other places for the vertices: where they came from, a twist, a tremor, or a heap.
+fn deformed(mesh: &TestMesh, places: &[Vec3], random: &mut Random) -> Vec<Vec3> {
+    let reach = places.iter().fold(0.0f32, |reach, p| reach.max(p.abs().max_element()));
+    let (turn, shape) = (random.between(-2.0, 2.0) / reach, Vec3::ONE + random.point(0.4));
+    let twisted = |p: &Vec3| Quat::from_rotation_y(p.y * turn) * *p * shape;
+    match random.below(4) {
+        0 => mesh.positions.clone(),
+        1 => places.iter().map(twisted).collect(),
+        2 => places.iter().map(|p| *p + random.point(0.02 * reach)).collect(),
+        _ => places.iter().map(|p| *p + random.point(reach)).collect(),
+    }
+}
+
+/// E01's bound for structures under edits. Before heaps were told from surfaces, the worst was 14.
+#[test]
+fn e01_trees_that_follow_deformations_cost_little_more_than_fresh_ones() {
+    let ball = |rings| closed::sphere(rings, rings + 6, Vec3::ZERO, 1.0);
+    let shapes = [
+        meshes::cubes([[0; 3]]),
+        meshes::coplanar_quads(10),
+        ball(4),
+        ball(10),
+        meshes::bumpy_sphere(20, 30),
+    ];
+    for mesh in shapes {
+        let mut random = Random::new(7);
+        let mut places = mesh.positions.clone();
+        let mut tree = build(&mesh, &BvhOptions::default());
+        let (mut refits, mut worst) = (0, 0.0f64);
+        for _ in 0..400 {
+            places = deformed(&mesh, &places, &mut random);
+            let refit = tree.refit(&places, &mesh.triangles).unwrap();
+            let other = TestMesh { positions: places.clone(), triangles: mesh.triangles.clone() };
+            let fresh = build(&other, &BvhOptions::default());
+            if refit.is_rebuild_due() {
+                tree = fresh;
+            } else {
+                refits += 1;
+                worst = worst.max(refit.cost / fresh.built_cost);
+            }
+        }
+        assert!(
+            worst <= 1.5 && refits > 150,
+            "{} triangles: {worst} after {refits} refits",
+            mesh.triangles.len()
+        );
     }
 }
 

@@ -15,8 +15,9 @@ pub(crate) struct MeshTree {
     pub triangles: Span,
     /// Box of the root, in the coordinates of the triangles.
     pub bounds: Aabb<f32>,
-    /// What the tree cost when it was last built.
+    /// What the tree cost when it was last built, and what of that no tree could have saved.
     built_cost: f64,
+    built_floor: f64,
 }
 
 impl MeshTree {
@@ -26,7 +27,13 @@ impl MeshTree {
         let triangles = heaps.triangles.place(&bvh.triangles, revision).inspect_err(|_| {
             heaps.bvh_nodes.release(nodes, revision);
         })?;
-        Ok(Self { nodes, triangles, bounds: bvh.bounds, built_cost: bvh.built_cost })
+        Ok(Self {
+            nodes,
+            triangles,
+            bounds: bvh.bounds,
+            built_cost: bvh.built_cost,
+            built_floor: bvh.built_floor,
+        })
     }
 
     /// Gives its place in the heaps back.
@@ -39,9 +46,9 @@ impl MeshTree {
     /// the triangle of an id stands, `mark` has the last word on each triangle.
     ///
     /// `None`, with everything as it was, if the tree should be built: there is none, it has other triangles, a place is
-    /// no place (a build then says so), or rays would pay for the old shape: its cost by the surface area heuristic is
-    /// more than [`REBUILD_RATIO`](luxel_accel::REBUILD_RATIO) times that of the last build, or another at all if that build
-    /// was over no surface. The cost is counted in the tree, not timed, so that two runs decide alike.
+    /// no place (a build then says so), or rays would pay for the old shape: its nodes cost by the surface area heuristic
+    /// more than [`REBUILD_RATIO`](luxel_accel::REBUILD_RATIO) times those of the last build, or that build was over quite
+    /// another shape. The cost is counted in the tree, not timed, so that two runs decide alike.
     pub(crate) fn refitted(
         &self,
         (positions, indices): (&[Vec3], &[[u32; 3]]),
@@ -60,6 +67,7 @@ impl MeshTree {
             triangles,
             bounds: self.bounds,
             built_cost: self.built_cost,
+            built_floor: self.built_floor,
         };
         let refit = bvh.refit(positions, indices).ok()?;
         if refit.is_rebuild_due() {

@@ -95,5 +95,6 @@ fn without_tree(triangles: Vec<Triangle>) -> MeshBvh {
         order: (0..triangles.len() as u32).collect(),
         triangles,
         built_cost: 0.0,
+        built_floor: 0.0,
     }
 }

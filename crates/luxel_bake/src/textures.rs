@@ -183,8 +183,15 @@ fn fault(texture: &TextureRef, mesh: &TriangleMesh, assets: &Assets) -> Option<S
         Some(_) if !mesh.uvs.get(texture.uv_set as usize).is_some_and(has_places) => {
             Some(format!("the mesh has no texture coordinates of set {}", texture.uv_set))
         }
+        Some(_) if !has_place(texture) => Some("its offset, scale or rotation is no number".to_owned()),
         Some(_) => None,
     }
+}
+
+/// True if what says how the picture lies is made of numbers.
+fn has_place(texture: &TextureRef) -> bool {
+    let TextureRef { offset, scale, rotation, normal_scale, .. } = texture;
+    offset.is_finite() && scale.is_finite() && rotation.is_finite() && normal_scale.is_finite()
 }
 
 /// Writes the slots of touched entities, or of all when images found other places.

@@ -170,6 +170,23 @@ fn what_cannot_be_shown_is_left_out_and_told_once() {
     assert_eq!((mask, warnings.len()), (0, 1));
     assert!(warnings[0].contains("colour: there is no image with asset id 999"), "{}", warnings[0]);
     assert!(warnings[0].contains("emission: a picture of radiance"), "{}", warnings[0]);
+    for damage in [
+        |one: &mut TextureRef| one.offset.y = f32::NAN,
+        |one: &mut TextureRef| one.scale.x = f32::INFINITY,
+        |one: &mut TextureRef| one.rotation = f32::NAN,
+        |one: &mut TextureRef| one.normal_scale = f32::NAN,
+    ] {
+        let mut damaged = TextureRef::new(image);
+        damage(&mut damaged);
+        let (mask, warnings) =
+            textures(&mut studio, MaterialTextures { color: Some(damaged), ..MaterialTextures::default() });
+        assert_eq!((mask, warnings.len()), (0, 1));
+        assert!(
+            warnings[0].contains("colour: its offset, scale or rotation is no number"),
+            "{}",
+            warnings[0]
+        );
+    }
     let (mask, warnings) = textures(&mut studio, both(missing, image));
     assert_eq!((mask, warnings.len()), (TEXTURE_ROLE_EMISSION, 2));
     let uneven =

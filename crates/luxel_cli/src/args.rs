@@ -51,7 +51,8 @@ pub(crate) enum Command {
     /// Say what a scene holds, costs and calls for
     ///
     /// Prints counts, memory per heap, the structures with their depths, which one the spheres have and why, features
-    /// in use and left out with the reason for each, what import dropped, and warnings.
+    /// in use and left out with the reason for each, cameras and the scenes of a glTF file with their numbers, what import
+    /// dropped, and warnings.
     Info(InfoArgs),
     /// Show the passes that a scene would run, and why
     ///
@@ -84,9 +85,6 @@ pub(crate) enum Command {
   luxel render scene.ron -o heat.png --view steps --backend gpu --json
   luxel render assets/random_spheres.ron --quality low --sphere-accel bvh"))]
 pub(crate) struct RenderArgs {
-    /// Scene (.ron) or model (.gltf, .glb, .obj, .ply, .vox)
-    pub(crate) file: PathBuf,
-
     /// Picture to write: .png (tone mapped, sRGB) or .exr (linear); FILE's name with .png in the current folder if not given
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
@@ -135,31 +133,8 @@ pub(crate) struct RenderArgs {
     ]))]
     pub(crate) light_sampling: Option<LightSampling>,
 
-    /// Structure by which rays find spheres; auto measures which costs least. No picture depends on it, but octree-seed's is
-    /// for comparison and sometimes wrong [default: the scene's]
-    #[arg(long, value_name = "NAME", value_parser = values::named(SphereAccel::NAMES.to_vec()))]
-    pub(crate) sphere_accel: Option<SphereAccel>,
-
-    /// How rays find the triangles of a mesh. No picture depends on it [default: the scene's, else bvh]
-    #[arg(long, value_name = "NAME", value_parser = values::named(MeshAccel::NAMES.to_vec()))]
-    pub(crate) mesh_accel: Option<MeshAccel>,
-
-    /// How much work goes into the trees of meshes. No picture depends on it [default: the scene's, else medium]
-    #[arg(long, value_name = "PRESET", value_parser = values::named(MeshQuality::NAMES.to_vec()))]
-    pub(crate) mesh_quality: Option<MeshQuality>,
-
-    /// A tree over each mesh and one over their places, or one over all triangles: for comparison, and not for scenes in
-    /// which things move. Pictures are the same within rounding, ids are not [default: the scene's, else two]
-    #[arg(long, value_name = "NAME", value_parser = values::named(MeshLevels::NAMES.to_vec()))]
-    pub(crate) mesh_levels: Option<MeshLevels>,
-
-    /// Scene of a glTF model, by name or by number from 0 [default: the model's]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) scene: Option<String>,
-
-    /// Picture around the scene (.hdr, .exr) in place of its sky; a model then gets no lamp
-    #[arg(long, value_name = "FILE")]
-    pub(crate) environment: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
 
     /// Camera to look through, by name or by number from 0 [default: the scene's]
     #[arg(long, value_name = "NAME")]
@@ -198,7 +173,7 @@ pub(crate) struct RenderArgs {
     pub(crate) json: bool,
 }
 
-/// A scene and what is asked of its structures, for `luxel info` and `luxel graph`.
+/// A scene and what is asked of its structures, for every command that loads one.
 #[derive(Args)]
 pub(crate) struct SceneArgs {
     /// Scene (.ron) or model (.gltf, .glb, .obj, .ply, .vox)
@@ -212,19 +187,21 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) environment: Option<PathBuf>,
 
-    /// As if this structure over the spheres were asked for [default: the scene's]
+    /// Structure by which rays find spheres; auto measures which costs least. No picture depends on it, but octree-seed's is
+    /// for comparison and sometimes wrong [default: the scene's]
     #[arg(long, value_name = "NAME", value_parser = values::named(SphereAccel::NAMES.to_vec()))]
     pub(crate) sphere_accel: Option<SphereAccel>,
 
-    /// As if this way through meshes were asked for [default: the scene's, else bvh]
+    /// How rays find the triangles of a mesh. No picture depends on it [default: the scene's, else bvh]
     #[arg(long, value_name = "NAME", value_parser = values::named(MeshAccel::NAMES.to_vec()))]
     pub(crate) mesh_accel: Option<MeshAccel>,
 
-    /// As if this much work in the trees of meshes were asked for [default: the scene's, else medium]
+    /// How much work goes into the trees of meshes. No picture depends on it [default: the scene's, else medium]
     #[arg(long, value_name = "PRESET", value_parser = values::named(MeshQuality::NAMES.to_vec()))]
     pub(crate) mesh_quality: Option<MeshQuality>,
 
-    /// As if these levels of trees over meshes were asked for [default: the scene's, else two]
+    /// A tree over each mesh and one over their places, or one over all triangles: for comparison, and not for scenes in
+    /// which things move. Pictures are the same within rounding, ids are not [default: the scene's, else two]
     #[arg(long, value_name = "NAME", value_parser = values::named(MeshLevels::NAMES.to_vec()))]
     pub(crate) mesh_levels: Option<MeshLevels>,
 }
@@ -436,8 +413,11 @@ mod tests {
         assert_eq!((args.size, args.error, args.exposure), (Some((8, 4)), Some(0.02), Some(-1.0)));
         assert_eq!(args.aov, [AovKind::Depth, AovKind::Ids]);
         assert_eq!((args.tone_map, args.view), (Some(ToneMap::AgX), View::PathTraced));
-        assert_eq!((args.quality, args.sphere_accel), (Some(Quality::Low), Some(SphereAccel::OctreeBase)));
-        let meshes = (args.mesh_accel, args.mesh_quality, args.mesh_levels);
+        assert_eq!(
+            (args.quality, args.scene.sphere_accel),
+            (Some(Quality::Low), Some(SphereAccel::OctreeBase))
+        );
+        let meshes = (args.scene.mesh_accel, args.scene.mesh_quality, args.scene.mesh_levels);
         let expected = (Some(MeshAccel::BvhEscape), Some(MeshQuality::Best), Some(MeshLevels::One));
         assert_eq!(meshes, expected);
     }

@@ -50,7 +50,7 @@ pub(crate) fn ignored(args: &RenderArgs, output: &Path) -> Vec<String> {
     let without_effect = given.filter_map(|(option, _, why)| {
         why.map(|why| format!("{option} has no effect on {}: {why}", output.display()))
     });
-    without_scenes(args.scene.is_some(), &args.file).into_iter().chain(without_effect).collect()
+    without_scenes(args.scene.scene.is_some(), &args.scene.file).into_iter().chain(without_effect).collect()
 }
 
 #[cfg(test)]

@@ -2,14 +2,14 @@
 use std::fmt::Write;
 
 use luxel_engine::info::SceneInfo;
-use luxel_engine::{ExitCode, SphereAccelFacts};
+use luxel_engine::{ExitCode, SceneEntry, SphereAccelFacts};
 
 use crate::args::InfoArgs;
 use crate::error::{CliError, one_line};
 use crate::reply;
 
-/// The most cameras that are listed.
-const MOST_CAMERAS: usize = 32;
+/// The most cameras, and the most scenes, that are listed.
+const MOST_NAMES: usize = 32;
 
 /// Describes a scene.
 pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
@@ -28,7 +28,10 @@ pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
 
 fn text(info: &SceneInfo) -> String {
     let mut sections = vec![head(info), structures(info), memory(info), features(info)];
-    sections.push(lines("cameras", &cameras(&info.cameras)));
+    if !info.scenes.is_empty() {
+        sections.push(lines("scenes", &first_few(info.scenes.iter().map(scene))));
+    }
+    sections.push(lines("cameras", &first_few(info.cameras.iter().map(|name| quoted(name)))));
     sections.push(lines("used of the model", &info.used));
     sections.push(lines("ignored", &info.ignored));
     sections.push(lines("dropped", &info.dropped));
@@ -58,14 +61,30 @@ fn counted(count: u64, unit: &str) -> String {
     if count == 1 { format!("1 {unit}") } else { format!("{count} {unit}s") }
 }
 
-/// The first cameras with their numbers, and how many more there are.
-fn cameras(names: &[String]) -> Vec<String> {
-    let first = names.iter().enumerate().take(MOST_CAMERAS);
-    let mut lines: Vec<_> = first.map(|(number, name)| format!("{number} '{}'", one_line(name))).collect();
-    if names.len() > MOST_CAMERAS {
-        lines.push(format!("and {} more", names.len() - MOST_CAMERAS));
+/// The first of what can be asked for by number, with their numbers, and how many more there are.
+fn first_few(all: impl ExactSizeIterator<Item = String>) -> Vec<String> {
+    let more = all.len().saturating_sub(MOST_NAMES);
+    let first = all.enumerate().take(MOST_NAMES);
+    let mut lines: Vec<_> = first.map(|(number, said)| format!("{number} {said}")).collect();
+    if more > 0 {
+        lines.push(format!("and {more} more"));
     }
     lines
+}
+
+fn quoted(name: &str) -> String {
+    format!("'{}'", one_line(name))
+}
+
+/// `'name' (default, shown)`.
+fn scene(entry: &SceneEntry) -> String {
+    let name = entry.name.as_deref().unwrap_or_default();
+    let marks = [(entry.is_default, "default"), (entry.is_shown, "shown")];
+    let marks: Vec<_> = marks.iter().filter(|(holds, _)| *holds).map(|(_, mark)| *mark).collect();
+    match marks[..] {
+        [] => quoted(name),
+        _ => format!("{} ({})", quoted(name), marks.join(", ")),
+    }
 }
 
 fn structures(info: &SceneInfo) -> String {

@@ -1,4 +1,4 @@
-//! A scene that is looked at and not rendered.
+//! A scene as the command line names it.
 use luxel_engine::{Engine, LoadOptions};
 
 use crate::args::SceneArgs;
@@ -7,16 +7,16 @@ use crate::ignored::without_scenes;
 use crate::reply;
 
 impl SceneArgs {
-    /// Loads the scene as it is in its file, and says which option has no effect.
+    /// Loads the scene as it is in its file, to be looked at and not rendered, and says which option has no effect.
     pub(crate) fn open(&self) -> Result<Engine, CliError> {
-        let options = LoadOptions {
-            scene: self.scene.clone(),
-            environment: self.environment.clone(),
-            ..LoadOptions::default()
-        };
-        let engine = Engine::load_with(&self.file, &options)?;
+        let engine = Engine::load_with(&self.file, &self.options(None))?;
         without_scenes(self.scene.is_some(), &self.file).iter().for_each(|note| reply::note(&one_line(note)));
         Ok(engine)
+    }
+
+    /// How the file is loaded; a model without a camera is framed for a picture of `size`.
+    pub(crate) fn options(&self, size: Option<(u32, u32)>) -> LoadOptions {
+        LoadOptions { scene: self.scene.clone(), environment: self.environment.clone(), size }
     }
 
     /// Asks for the structures that the command line names.

@@ -12,6 +12,8 @@ use luxel_study::octree::StudyProgress;
 const STEPS: u64 = 1000;
 /// How often a study tells how far it is where there is no terminal.
 const TELL_EVERY: Duration = Duration::from_secs(10);
+/// Part of a study before which nothing is said about its end: it begins with pictures, which take longer than most runs.
+const TELLING_PART: f64 = 0.05;
 const TEMPLATE: &str = "{spinner} {prefix} {bar:30} {percent:>3} %  {msg}";
 
 /// Shows how far a render or study is.
@@ -79,7 +81,8 @@ fn message(progress: &RenderProgress) -> String {
 
 /// What is measured, time so far and to go.
 fn study_message(progress: &StudyProgress) -> String {
-    format!("{}, {}{}", progress.what, clock(progress.secs), to_go(progress.fraction, progress.secs))
+    let known = if progress.fraction < TELLING_PART { 0.0 } else { progress.fraction };
+    format!("{}, {}{}", progress.what, clock(progress.secs), to_go(known, progress.secs))
 }
 
 /// Time until the end if work goes on as it did; nothing before anything is done.
@@ -114,6 +117,7 @@ mod tests {
         assert_eq!(clock(3_725.4), "1:02:05");
         let study = StudyProgress { fraction: 0.5, what: "CPU, 10 spheres, bvh".to_owned(), secs: 30.0 };
         assert_eq!(study_message(&study), "CPU, 10 spheres, bvh, 0:30, 0:30 to go");
+        assert_eq!(study_message(&StudyProgress { fraction: 0.01, ..study }), "CPU, 10 spheres, bvh, 0:30");
     }
 
     #[test]

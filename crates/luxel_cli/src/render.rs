@@ -29,7 +29,7 @@ struct Answer {
 /// Renders as the arguments say.
 pub(crate) fn render(args: &RenderArgs) -> Result<ExitCode, CliError> {
     let targets = Targets {
-        output: args.output.clone().unwrap_or_else(|| default_output(&args.file)),
+        output: args.output.clone().unwrap_or_else(|| default_output(&args.scene.file)),
         aovs: each_once(&args.aov),
         view: args.view,
         precision: args.exr_precision.unwrap_or_default(),
@@ -37,9 +37,8 @@ pub(crate) fn render(args: &RenderArgs) -> Result<ExitCode, CliError> {
     if args.output.is_some() {
         targets.check()?;
     }
-    let options =
-        LoadOptions { scene: args.scene.clone(), environment: args.environment.clone(), size: args.size };
-    run(&args.file, &options, job(args), &targets, &ignored(args, &targets.output), args.json)
+    let options = args.scene.options(args.size);
+    run(&args.scene.file, &options, job(args), &targets, &ignored(args, &targets.output), args.json)
 }
 
 /// Renders a job to one PNG and says so.
@@ -59,10 +58,10 @@ fn job(args: &RenderArgs) -> RenderJob {
         seed: args.seed,
         light_sampling: args.light_sampling,
         max_depth: args.max_depth,
-        sphere_accel: args.sphere_accel,
-        mesh_accel: args.mesh_accel,
-        mesh_quality: args.mesh_quality,
-        mesh_levels: args.mesh_levels,
+        sphere_accel: args.scene.sphere_accel,
+        mesh_accel: args.scene.mesh_accel,
+        mesh_quality: args.scene.mesh_quality,
+        mesh_levels: args.scene.mesh_levels,
         camera: args.camera.clone(),
         tone_map: args.tone_map,
         exposure: args.exposure,

@@ -48,14 +48,14 @@ pub fn enters_root<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>) -> bool {
 /// Visits the leaves that a ray enters, the nearer first. The ray enters the root's box.
 #[inline(always)]
 pub fn walk<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>, leaves: impl Leaves<R>) -> Walk {
-    Walker::<R, _, false, STACK_SIZE>::new(nodes, ray, leaves).run()
+    walk_near_first::<R, false, STACK_SIZE>(nodes, ray, leaves)
 }
 
 /// Visits the leaves that a ray for any hit enters: the nearer first, and of two boxes around its start the second, where
 /// builders put what is likelier to end it. The ray enters the root's box.
 #[inline(always)]
 pub fn walk_for_any<R: Real>(nodes: &[BvhNode], ray: &SlabRay<R>, leaves: impl Leaves<R>) -> Walk {
-    Walker::<R, _, true, STACK_SIZE>::new(nodes, ray, leaves).run()
+    walk_near_first::<R, true, STACK_SIZE>(nodes, ray, leaves)
 }
 
 /// Visits the leaves that a ray enters in depth-first order, by skip pointers (escape indices) alone: without a stack, but
@@ -80,126 +80,96 @@ impl Walk {
     }
 }
 
-/// The state of a walk, for any hit or for the closest.
-struct Walker<'a, R: Real, L, const ANY: bool, const SIZE: usize> {
-    nodes: &'a [BvhNode],
-    ray: SlabRay<R>,
-    leaves: L,
-    walk: Walk,
-    /// `BvhNode::leaf` of a node, and where the ray enters it.
-    stack: [(u32, R); SIZE],
-    waiting: usize,
+/// A walk for any hit or for the closest.
+///
+/// In one piece, and what changes on the way in variables, not in a record: the stack, which is indexed, and what is lent
+/// to [`aside`] stand in memory, and a record with one of them in it would stand there as a whole.
+#[inline(always)]
+fn walk_near_first<R: Real, const ANY: bool, const SIZE: usize>(
+    nodes: &[BvhNode],
+    ray: &SlabRay<R>,
+    mut leaves: impl Leaves<R>,
+) -> Walk {
+    let Some(root) = nodes.first() else { return Walk::ROOT_MISSED };
+    let pair_ray = PairRay::new(ray);
+    let (mut t_max, mut walk) = (ray.t_max, Walk { node_count: 1, is_sound: true });
+    // `BvhNode::leaf` of each node that waits, and where the ray enters it.
+    let (mut stack, mut waiting) = ([(0, R::ZERO); SIZE], 0);
+    let mut content = root.leaf;
+    loop {
+        if content >> LEAF_COUNT_SHIFT == 0 {
+            let Some([a, b]) = children(nodes, content, walk.node_count) else {
+                return Walk { is_sound: false, ..walk };
+            };
+            walk.node_count += 2;
+            let PairHit { enter, hits } = test(&pair_ray, a, b, t_max);
+            // Branches, no selection: a branch that was foreseen lets the next node be read before this one is tested.
+            if hits == 0b11 {
+                let second_first = if ANY { enter[1] <= enter[0] } else { enter[1] < enter[0] };
+                let (far, later);
+                if second_first {
+                    (content, far, later) = (b.leaf, content, (a.leaf, enter[0]));
+                } else {
+                    (content, far, later) = (a.leaf, content + 1, (b.leaf, enter[1]));
+                }
+                if let Some(place) = stack.get_mut(waiting) {
+                    *place = later;
+                    waiting += 1;
+                } else {
+                    let ray = SlabRay { t_max, ..*ray };
+                    (t_max, walk) = aside(nodes, ray, walk, &mut leaves, far as usize);
+                    if !walk.is_sound || t_max < ray.t_min {
+                        return walk;
+                    }
+                }
+                continue;
+            }
+            if hits & 0b01 != 0 {
+                content = a.leaf;
+                continue;
+            }
+            if hits != 0 {
+                content = b.leaf;
+                continue;
+            }
+        } else {
+            let (first, count) = BvhNode { leaf: content, ..BvhNode::default() }.primitives();
+            t_max = leaves.visit(first, count);
+            if t_max < ray.t_min {
+                return walk;
+            }
+        }
+        let Some(next) = pop(&stack, &mut waiting, t_max) else { return walk };
+        content = next;
+    }
 }
 
-impl<'a, R: Real, L: Leaves<R>, const ANY: bool, const SIZE: usize> Walker<'a, R, L, ANY, SIZE> {
-    #[inline(always)]
-    fn new(nodes: &'a [BvhNode], ray: &SlabRay<R>, leaves: L) -> Self {
-        let walk = Walk { node_count: 1, is_sound: true };
-        Self { nodes, ray: *ray, leaves, walk, stack: [(0, R::ZERO); SIZE], waiting: 0 }
-    }
+/// The children of an inner node; none in a damaged tree, where a node is not there or more boxes than all were tested.
+#[inline(always)]
+fn children(nodes: &[BvhNode], first: u32, node_count: u64) -> Option<&[BvhNode; 2]> {
+    let first = first as usize;
+    let pair = nodes.get(first..first + 2).filter(|_| node_count < nodes.len() as u64);
+    pair?.as_array()
+}
 
-    #[inline(always)]
-    fn run(mut self) -> Walk {
-        let pair_ray = PairRay::new(&self.ray);
-        let mut next = self.nodes.first().map(|root| root.leaf);
-        while let Some(content) = next {
-            next = if content >> LEAF_COUNT_SHIFT == 0 {
-                self.enter(&pair_ray, content)
-            } else {
-                self.visit(content);
-                None
-            };
-            if next.is_none() {
-                next = self.pop();
-            }
-        }
-        self.walk
-    }
+/// Tests the boxes of two nodes.
+#[inline(always)]
+fn test<R: Real>(pair_ray: &PairRay<R>, a: &BvhNode, b: &BvhNode, t_max: R) -> PairHit<R> {
+    let ([a_lo, a_hi], [b_lo, b_hi]) = (rows(a), rows(b));
+    pair_ray.test([a_lo, b_lo], [a_hi, b_hi], t_max)
+}
 
-    /// True if more boxes may be tested; else the tree is damaged.
-    #[inline(always)]
-    fn may_go_on(&self) -> bool {
-        self.walk.node_count < self.nodes.len() as u64
-    }
-
-    /// Ends the walk of a damaged tree.
-    #[cold]
-    fn give_up(&mut self) {
-        self.walk.is_sound = false;
-        self.waiting = 0;
-    }
-
-    /// Tests the children of an inner node: the one to go on with, if any.
-    #[inline(always)]
-    fn enter(&mut self, pair_ray: &PairRay<R>, first_child: u32) -> Option<u32> {
-        let first = first_child as usize;
-        let pair = self.nodes.get(first..first + 2);
-        let Some([a, b]) = pair.filter(|_| self.may_go_on()) else {
-            self.give_up();
-            return None;
-        };
-        self.walk.node_count += 2;
-        let ([a_lo, a_hi], [b_lo, b_hi]) = (rows(a), rows(b));
-        let PairHit { enter, hits } = pair_ray.test([a_lo, b_lo], [a_hi, b_hi], self.ray.t_max);
-        // Branches, no selection: a branch that was foreseen lets the next node be read before this one is tested.
-        if hits == 0b11 {
-            let second_first = if ANY { enter[1] <= enter[0] } else { enter[1] < enter[0] };
-            return Some(if second_first {
-                self.push(first, a.leaf, enter[0]);
-                b.leaf
-            } else {
-                self.push(first + 1, b.leaf, enter[1]);
-                a.leaf
-            });
-        }
-        if hits & 0b01 != 0 {
-            return Some(a.leaf);
-        }
-        (hits != 0).then_some(b.leaf)
-    }
-
-    /// Lets a node wait; if there is no room, walks its subtree at once.
-    #[inline(always)]
-    fn push(&mut self, node: usize, content: u32, enter: R) {
-        match self.stack.get_mut(self.waiting) {
-            Some(place) => {
-                *place = (content, enter);
-                self.waiting += 1;
-            }
-            None => self.walk_by_skips(node),
+/// The waiting node that was pushed last, of those that the ray enters before the best hit.
+#[inline(always)]
+fn pop<R: Real>(stack: &[(u32, R)], waiting: &mut usize, t_max: R) -> Option<u32> {
+    while *waiting > 0 {
+        *waiting -= 1;
+        let (content, enter) = stack[*waiting];
+        if enter <= t_max {
+            return Some(content);
         }
     }
-
-    /// The waiting node that was pushed last, of those that the ray enters before the best hit.
-    #[inline(always)]
-    fn pop(&mut self) -> Option<u32> {
-        while self.waiting > 0 {
-            self.waiting -= 1;
-            let (content, enter) = self.stack[self.waiting];
-            if enter <= self.ray.t_max {
-                return Some(content);
-            }
-        }
-        None
-    }
-
-    #[inline(always)]
-    fn visit(&mut self, leaf: u32) {
-        let (first, count) = BvhNode { leaf, ..BvhNode::default() }.primitives();
-        self.ray.t_max = self.leaves.visit(first, count);
-        if self.ray.t_max < self.ray.t_min {
-            self.waiting = 0;
-        }
-    }
-
-    /// Walks a subtree that does not fit onto the stack.
-    #[inline(always)]
-    fn walk_by_skips(&mut self, root: usize) {
-        (self.ray.t_max, self.walk) = aside(self.nodes, self.ray, self.walk, &mut self.leaves, root);
-        if !self.walk.is_sound || self.ray.t_max < self.ray.t_min {
-            self.waiting = 0;
-        }
-    }
+    None
 }
 
 /// [`follow_skips`] out of the way of what happens more often. What a walk needs is passed by value, so that it need not
@@ -280,7 +250,7 @@ mod tests {
             slab_ray.t_max
         };
         let walk = match enters_root(nodes, &slab_ray) {
-            true => Walker::<f32, _, false, SIZE>::new(nodes, &slab_ray, visit_leaf).run(),
+            true => walk_near_first::<f32, false, SIZE>(nodes, &slab_ray, visit_leaf),
             false => Walk::ROOT_MISSED,
         };
         entries.sort_unstable();

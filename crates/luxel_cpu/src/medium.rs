@@ -13,11 +13,12 @@
 //! enter (the camera is inside, or the body is made of several meshes) leaves the innermost one in its stead. Where the list is full
 //! the outermost body is forgotten. A camera starts in free space; sheets (`MATERIAL_THIN`) and what is not clear bound no body.
 use luxel_flat::{
-    Counter, Counters, Feature, FeatureSet, FlatScene, MATERIAL_DIELECTRIC, MATERIAL_PRINCIPLED,
-    MATERIAL_THIN, MaterialRecord, NONE,
+    Counter, Counters, Feature, FeatureSet, FlatScene, MATERIAL_DIELECTRIC, MATERIAL_NO_BORDER,
+    MATERIAL_PRINCIPLED, MATERIAL_THIN, MaterialRecord, NONE,
 };
 use luxel_geom::{Real, Vector};
 
+use crate::PathState;
 use crate::bsdf::{Bsdf, Geometry};
 use crate::surface::Surface;
 
@@ -37,25 +38,13 @@ impl Media {
         self.0[0]
     }
 
-    /// The list after a body was entered.
-    #[must_use]
-    pub fn entered(self, body: u32, counters: &mut Counters) -> Self {
-        let [a, b, c, forgotten] = self.without(body).0;
-        counters[Counter::MediaOverflows] += u64::from(forgotten != NONE);
-        Self([body, a, b, c])
-    }
-
-    /// The list after a body was left.
-    #[must_use]
-    pub fn left(self, body: u32) -> Self {
-        self.without(if self.contains(body) { body } else { self.innermost() })
-    }
-
     fn contains(self, body: u32) -> bool {
         self.0.contains(&body)
     }
 
-    fn without(self, body: u32) -> Self {
+    /// The list without a body.
+    #[must_use]
+    pub fn without(self, body: u32) -> Self {
         let mut kept = self.0.into_iter().filter(|other| *other != body);
         Self([(); 4].map(|()| kept.next().unwrap_or(NONE)))
     }
@@ -79,59 +68,56 @@ pub fn medium_transmittance<R: Real>(
     R::Vec3::from_array(record.absorption).map(|sigma| (-(sigma * distance).min(R::from_f64(BLACK))).exp())
 }
 
+/// The surface as a path meets it: which body a ray enters or leaves that goes on beyond it, and what it is to light.
+pub fn met_by<R: Real>(
+    scene: &FlatScene,
+    features: FeatureSet,
+    path: &PathState<R>,
+    surface: &Surface<R>,
+) -> Surface<R> {
+    let is_told = features.has(Feature::Absorption) || features.has(Feature::NestedMedia);
+    if !is_told || !is_border(&surface.bsdf) {
+        return Surface { body: NONE, ..*surface };
+    }
+    let front = surface.facing(path.ray.direction).front;
+    let is_known = front || path.media.contains(surface.body);
+    let body = if is_known { surface.body } else { path.media.innermost() };
+    let met = Surface { body, ..*surface };
+    if features.has(Feature::NestedMedia) { immersed(scene, path.media, &met, front) } else { met }
+}
+
+/// The surface with the index of its body over that of what surrounds it; no border to a ray that leaves the body while
+/// it is in one that it entered later.
+fn immersed<R: Real>(scene: &FlatScene, media: Media, surface: &Surface<R>, front: bool) -> Surface<R> {
+    let around = media.without(surface.body).innermost();
+    let record = scene.materials.as_slice().get(around as usize);
+    let Some(record) = record.filter(|_| surface.body != NONE && around != NONE) else { return *surface };
+    let mut bsdf = surface.bsdf;
+    bsdf.ior = bsdf.ior / R::from_f32(record.ior);
+    if !front && surface.body != media.innermost() {
+        bsdf.kind = MATERIAL_NO_BORDER;
+    }
+    Surface { bsdf, ..*surface }
+}
+
 /// The bodies that a ray is in which leaves a surface in direction `wi`.
 pub fn media_towards<R: Real>(
-    features: FeatureSet,
     media: Media,
     surface: &Surface<R>,
     geometry: &Geometry<R>,
     wi: R::Vec3,
     counters: &mut Counters,
 ) -> Media {
-    let is_told = features.has(Feature::Absorption) || features.has(Feature::NestedMedia);
-    if !is_told || wi.dot(geometry.geometric) >= R::ZERO || !is_border(&surface.bsdf) {
-        media
-    } else if geometry.front {
-        media.entered(surface.material, counters)
-    } else {
-        media.left(surface.material)
+    if wi.dot(geometry.geometric) >= R::ZERO || surface.body == NONE {
+        return media;
     }
-}
-
-/// True if a surface is no border to a ray, which is in a body that it entered later.
-pub fn is_no_border<R: Real>(
-    features: FeatureSet,
-    media: Media,
-    surface: &Surface<R>,
-    geometry: &Geometry<R>,
-) -> bool {
-    features.has(Feature::NestedMedia)
-        && !geometry.front
-        && is_border(&surface.bsdf)
-        && media.innermost() != surface.material
-        && media.contains(surface.material)
-}
-
-/// The body around the one that a surface bounds, or `NONE`.
-pub fn surrounding<R: Real>(
-    features: FeatureSet,
-    media: Media,
-    surface: &Surface<R>,
-    geometry: &Geometry<R>,
-) -> u32 {
-    let body = surface.material;
-    match geometry.front {
-        _ if !features.has(Feature::NestedMedia) || !is_border(&surface.bsdf) => NONE,
-        true => media.without(body).innermost(),
-        false => media.left(body).innermost(),
+    let others = media.without(surface.body);
+    if !geometry.front {
+        return others;
     }
-}
-
-/// The surface with the index of its body over that of what surrounds it.
-pub fn immersed<R: Real>(scene: &FlatScene, surface: &Surface<R>, around: u32) -> Surface<R> {
-    let record = scene.materials.as_slice().get(around as usize).filter(|_| around != NONE);
-    let index = record.map_or(R::ONE, |record| R::from_f32(record.ior));
-    Surface { bsdf: Bsdf { ior: surface.bsdf.ior / index, ..surface.bsdf }, ..*surface }
+    let [a, b, c, forgotten] = others.0;
+    counters[Counter::MediaOverflows] += u64::from(forgotten != NONE);
+    Media([surface.body, a, b, c])
 }
 
 /// True if a surface bounds a body that light passes.
@@ -140,37 +126,5 @@ fn is_border<R: Real>(bsdf: &Bsdf<R>) -> bool {
         MATERIAL_DIELECTRIC => true,
         MATERIAL_PRINCIPLED => bsdf.flags & MATERIAL_THIN == 0 && bsdf.transmission > R::ZERO,
         _ => false,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn in_bodies(bodies: &[u32]) -> Media {
-        let enter = |media: Media, body: &u32| media.entered(*body, &mut Counters::default());
-        bodies.iter().fold(Media::FREE_SPACE, enter)
-    }
-
-    #[test]
-    fn bodies_are_left_in_any_order() {
-        assert_eq!(in_bodies(&[7, 8, 9]).0, [9, 8, 7, NONE]);
-        assert_eq!(in_bodies(&[7, 8, 9]).left(8).0, [9, 7, NONE, NONE]);
-        assert_eq!(in_bodies(&[7, 8]).left(8).left(7), Media::FREE_SPACE);
-        // Entered again, a body is in the list once.
-        assert_eq!(in_bodies(&[7, 8, 7]).0, [7, 8, NONE, NONE]);
-        // What was not entered is taken for the innermost.
-        assert_eq!(in_bodies(&[7, 8]).left(5).0, [7, NONE, NONE, NONE]);
-        assert_eq!(Media::FREE_SPACE.left(5), Media::FREE_SPACE);
-    }
-
-    #[test]
-    fn of_too_many_bodies_the_outermost_is_forgotten() {
-        let mut counters = Counters::default();
-        let full = in_bodies(&[1, 2, 3, 4]);
-        assert_eq!(full.entered(3, &mut counters).0, [3, 4, 2, 1]);
-        assert_eq!(counters[Counter::MediaOverflows], 0);
-        assert_eq!(full.entered(5, &mut counters).0, [5, 4, 3, 2]);
-        assert_eq!(counters[Counter::MediaOverflows], 1);
     }
 }

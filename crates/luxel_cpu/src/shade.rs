@@ -1,15 +1,18 @@
 //! What happens at the end of a ray: light is gathered, lights are sampled, and the path goes on or ends.
-use luxel_flat::{Counter, Counters, Feature, FeatureSet, FlatScene, MATERIAL_UNLIT, NONE, SceneParams};
+use luxel_flat::{
+    Counter, Counters, Feature, FeatureSet, FlatScene, MATERIAL_NO_BORDER, MATERIAL_UNLIT, NONE, SceneParams,
+};
 use luxel_geom::{Ray, Real, Vector, rng};
 
 use crate::alpha::ray_coins;
 use crate::bsdf::{self, BsdfSample, Geometry};
 use crate::lights::{self, LightSample, Receiver, shadow};
-use crate::medium::{immersed, is_no_border, media_towards, medium_transmittance, surrounding};
+use crate::medium::{media_towards, medium_transmittance};
 use crate::surface::Surface;
 use crate::{Exclusion, Hit, PathState, sky};
 
-/// Shades the end of the path's current ray: nothing, or a hit and its surface.
+/// Shades the end of the path's current ray: nothing, or a hit and its surface as the path meets it
+/// ([`crate::medium::met_by`]).
 ///
 /// A path may meet `max_depth` surfaces; it gathers the emission of each and the sky if it escapes before. So
 /// in a closed box of albedo ρ and emission L the picture is L (1 + ρ + … + ρ^(max_depth − 1)). What a light sample at
@@ -72,13 +75,6 @@ fn go_on<R: Real>(
     counters: &mut Counters,
 ) -> bool {
     let geometry = surface.facing(path.ray.direction);
-    if is_no_border(features, path.media, surface, &geometry) {
-        go_straight_on(scene, features, path, (hit, surface, &geometry), counters);
-        return true;
-    }
-    let around = surrounding(features, path.media, surface, &geometry);
-    counters[Counter::NestedBorders] += u64::from(around != NONE);
-    let surface = &immersed(scene, surface, around);
     if features.has(Feature::Lights) && !bsdf::is_delta(&surface.bsdf) {
         let block = rng::bounce_block(path.bounce - 1) + 1;
         let u = rng::uniform4::<R>(path.pixel, path.sample, block, scene.params.seed);
@@ -106,12 +102,15 @@ fn gather_light<R: Real>(
     let value = bsdf::evaluate(&surface.bsdf, geometry, light.wi, scene.albedo_tables.as_slice());
     let weight = lights::sampled_weight(scene, light, value.pdf) / light.pdf;
     let radiance = path.throughput * value.f_cos * light.radiance * weight;
-    if radiance.max_element() <= R::ZERO
+    // A light that does not count adds no NaN either; one that counts is not lost beside black channels.
+    let is_black = radiance.x() <= R::ZERO && radiance.y() <= R::ZERO && radiance.z() <= R::ZERO;
+    if weight == R::ZERO
+        || is_black
         || !shadow::is_visible(scene, hit, surface, light, coins_of(scene, path), counters)
     {
         return;
     }
-    let medium = media_towards(features, path.media, surface, geometry, light.wi, counters).innermost();
+    let medium = media_towards(path.media, surface, geometry, light.wi, counters).innermost();
     let transmittance = medium_transmittance::<R>(scene, features, medium, light.distance, counters);
     path.radiance = path.radiance + radiance * transmittance;
 }
@@ -124,51 +123,42 @@ fn scatter<R: Real>(
     (hit, surface, geometry): Shaded<R>,
     counters: &mut Counters,
 ) -> bool {
-    let tables = scene.albedo_tables.as_slice();
-    let block = rng::bounce_block(path.bounce - 1);
-    let [u0, u1, u2, _] = rng::uniform4::<R>(path.pixel, path.sample, block, scene.params.seed);
+    let is_nested = surface.body != NONE && path.media.without(surface.body).innermost() != NONE;
+    counters[Counter::NestedBorders] += u64::from(features.has(Feature::NestedMedia) && is_nested);
     let Some(BsdfSample { wi, weight, pdf, eta_scale }) =
-        bsdf::sample(&surface.bsdf, geometry, [u0, u1, u2], tables, counters)
+        next_direction(scene, path, surface, geometry, counters)
     else {
         return false;
     };
+    counters[Counter::ScatteredRays] += 1;
     path.throughput = path.throughput * weight;
     path.eta_scale *= eta_scale;
-    leave(scene, features, path, (hit, surface, geometry), (wi, pdf), counters);
-    true
-}
-
-/// Lets the path's ray cross a surface that is no border to it.
-fn go_straight_on<R: Real>(
-    scene: &FlatScene,
-    features: FeatureSet,
-    path: &mut PathState<R>,
-    shaded: Shaded<R>,
-    counters: &mut Counters,
-) {
-    counters[Counter::NestedBorders] += 1;
-    // No light could have been sampled instead: the border would have been in its way.
-    let towards = (path.ray.direction, R::ZERO);
-    leave(scene, features, path, shaded, towards, counters);
-}
-
-/// Starts the path's next ray, in a direction of this density.
-fn leave<R: Real>(
-    scene: &FlatScene,
-    features: FeatureSet,
-    path: &mut PathState<R>,
-    (hit, surface, geometry): Shaded<R>,
-    (wi, pdf): (R::Vec3, R),
-    counters: &mut Counters,
-) {
-    counters[Counter::ScatteredRays] += 1;
-    path.media = media_towards(features, path.media, surface, geometry, wi, counters);
+    path.media = media_towards(path.media, surface, geometry, wi, counters);
     path.ray = Ray::new(surface.place.spawn_origin(wi), wi);
     path.pdf = pdf;
     path.normal = surface.shading_normal;
     let how = shadow::exclude_towards(surface, wi);
     path.exclusion =
         Exclusion { instance: hit.instance, primitive: hit.on.slot, how, coins: coins_of(scene, path) };
+    true
+}
+
+/// Where the path goes on; `None` if its light is absorbed.
+fn next_direction<R: Real>(
+    scene: &FlatScene,
+    path: &PathState<R>,
+    surface: &Surface<R>,
+    geometry: &Geometry<R>,
+    counters: &mut Counters,
+) -> Option<BsdfSample<R>> {
+    if surface.bsdf.kind == MATERIAL_NO_BORDER {
+        // Straight on. No light could have been sampled instead: the border would have been in its way.
+        let weight = R::Vec3::splat(R::ONE);
+        return Some(BsdfSample { wi: path.ray.direction, weight, pdf: R::ZERO, eta_scale: R::ONE });
+    }
+    let block = rng::bounce_block(path.bounce - 1);
+    let [u0, u1, u2, _] = rng::uniform4::<R>(path.pixel, path.sample, block, scene.params.seed);
+    bsdf::sample(&surface.bsdf, geometry, [u0, u1, u2], scene.albedo_tables.as_slice(), counters)
 }
 
 /// The coins of the rays that leave the surface that was just met.

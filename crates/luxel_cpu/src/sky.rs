@@ -20,26 +20,16 @@ pub fn gather<R: Real>(
         let weight = found_weight(scene, scattered, sampled);
         return suns + environment_radiance::<R>(scene, direction, counters) * weight;
     }
-    suns + radiance::<R>(&scene.params, features, direction, counters)
-}
-
-/// Radiance of the constant or the gradient sky.
-fn radiance<R: Real>(
-    params: &SceneParams,
-    features: FeatureSet,
-    direction: R::Vec3,
-    counters: &mut Counters,
-) -> R::Vec3 {
     if features.has(Feature::GradientSky) {
-        counters[Counter::GradientSkyLookups] += 1;
-        return gradient_sky::<R>(params, direction);
+        return suns + gradient_sky::<R>(&scene.params, direction, counters);
     }
-    R::Vec3::from_array(params.sky)
+    suns + R::Vec3::from_array(scene.params.sky)
 }
 
 /// From the horizon's radiance to the zenith's or the ground's, linear in the height of the direction. In this form
 /// a sky whose three radiances are equal has exactly that radiance everywhere, as the constant sky has.
-fn gradient_sky<R: Real>(params: &SceneParams, direction: R::Vec3) -> R::Vec3 {
+fn gradient_sky<R: Real>(params: &SceneParams, direction: R::Vec3, counters: &mut Counters) -> R::Vec3 {
+    counters[Counter::GradientSkyLookups] += 1;
     let horizon = R::Vec3::from_array(params.sky);
     let pole = if direction.y() >= R::ZERO { params.sky_zenith } else { params.sky_ground };
     let height = direction.y().abs().min(R::ONE);

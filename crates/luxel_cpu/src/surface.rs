@@ -1,6 +1,7 @@
 //! From a hit to the surface that shading works with: its place, its frame, and its material with textures applied.
 //!
-//! Twin of the kernel `surface`, which writes one `luxel_flat::SurfacePoint` per path.
+//! Twin of the kernel `surface`, which writes one `luxel_flat::SurfacePoint` per path; what a surface is to the path that
+//! meets it comes from [`crate::medium::met_by`].
 use luxel_flat::{
     Counter, Counters, Feature, FeatureSet, FlatScene, Instance, KIND_MESH, MATERIAL_EMISSIVE,
     MaterialRecord, NONE, TEXTURE_ROLE_NORMAL, TriangleAttributes,
@@ -31,8 +32,9 @@ pub struct Surface<R: Real> {
     pub emission: R::Vec3,
     /// Its light in the table of lights, or `NONE`.
     pub light: u32,
-    /// Material slot.
-    pub material: u32,
+    /// The body that it bounds if it bounds one, as a material slot; once it was met, the one that a ray enters or leaves
+    /// which goes on beyond, or `NONE`.
+    pub body: u32,
 }
 
 impl<R: Real> Surface<R> {
@@ -53,7 +55,7 @@ impl<R: Real> Surface<R> {
             bsdf: Bsdf::of(material),
             emission: emitted_radiance::<R>(features, material, counters),
             light: light(scene, hit, material),
-            material: hit.on.material,
+            body: hit.on.material,
         };
         if features.has(Feature::Attributes)
             && let Some(record) = attributes::record(scene, instance, hit.on.slot)

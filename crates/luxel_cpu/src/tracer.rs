@@ -14,6 +14,7 @@ use luxel_flat::{Aov, Counter, Counters, Feature, FeatureSet, FilmPixel, FlatSce
 use luxel_geom::Vector;
 use rayon::prelude::*;
 
+use crate::medium::met_by;
 use crate::surface::Surface;
 use crate::{PathState, camera, first_hit, shade, traverse};
 
@@ -203,8 +204,10 @@ impl Context<'_> {
             let before = aov.is_some().then(|| counters.clone());
             let hit = traverse::intersect(self.scene, &path.ray, &path.exclusion, counters);
             let steps = before.map(|before| first_hit::steps(&before, counters));
-            let surface =
-                hit.as_ref().map(|hit| Surface::at(self.scene, self.features, &path.ray, hit, counters));
+            let surface = hit.as_ref().map(|hit| {
+                let surface = Surface::at(self.scene, self.features, &path.ray, hit, counters);
+                met_by(self.scene, self.features, &path, &surface)
+            });
             let end = hit.as_ref().zip(surface.as_ref());
             if let (Some(aov), Some(steps)) = (aov.take(), steps) {
                 first_hit::record(&path.ray, self.sample, end, steps, aov, counters);

@@ -1,6 +1,7 @@
 //! What a scene holds, costs, and calls for.
 use luxel_bake::BakeReport;
 use luxel_flat::{FEATURES, FeatureSet};
+use luxel_scene::SceneEntry;
 use serde::Serialize;
 
 use crate::{Engine, EngineError, SphereAccelFacts};
@@ -31,6 +32,8 @@ pub struct SceneInfo {
     pub features: Vec<FeatureFacts>,
     /// Names of the cameras, in the order of their numbers; empty for one without a name.
     pub cameras: Vec<String>,
+    /// Every scene of a glTF model, in the order of their numbers; empty for other files.
+    pub scenes: Vec<SceneEntry>,
     /// What of a model is shown, one line each.
     pub used: Vec<String>,
     /// What a model has and the scene does not show, one line each.
@@ -72,6 +75,7 @@ impl Engine {
             sphere_accel,
             features: features(scene.features),
             cameras: self.cameras().into_iter().map(|(_, name)| name).collect(),
+            scenes: self.load_report().scenes.clone(),
             used: self.load_report().used.clone(),
             ignored: self.load_report().ignored.clone(),
             dropped: self.load_report().dropped.clone(),

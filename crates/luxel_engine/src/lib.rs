@@ -41,7 +41,8 @@ pub use luxel_film::tracer::BackendFacts;
 pub use luxel_film::{AovKind, ToneMap, View};
 pub use luxel_flat::{Counter, Counters, Feature, FeatureSet};
 pub use luxel_scene::{
-    LightSampling, LoadOptions, MeshAccel, MeshLevels, MeshQuality, MeshStructure, SphereAccel, SphereCloud,
+    LightSampling, LoadOptions, MeshAccel, MeshLevels, MeshQuality, MeshStructure, SceneEntry, SphereAccel,
+    SphereCloud,
 };
 pub use quality::{QUALITIES, Quality, QualityRow};
 pub use runner::{Observer, RenderEvent, RenderProgress, Rendered, Stopped};

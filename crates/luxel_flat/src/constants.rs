@@ -26,35 +26,29 @@ shared_const! {
     pub const MIN_DIRECTION_RATIO: f32 = luxel_geom::ray::MIN_DIRECTION_RATIO;
     /// Smallest `alpha` of a rough surface (`luxel_geom::microfacet::SMOOTH_ALPHA`).
     pub const SMOOTH_ALPHA: f32 = luxel_geom::microfacet::SMOOTH_ALPHA;
-    /// Cosines in the conductor's albedo table (`luxel_geom::albedo`).
-    pub const ALBEDO_CONDUCTOR_COSINES: u32 = luxel_geom::albedo::CONDUCTOR_COSINES;
-    /// Roughnesses in the conductor's albedo table (`luxel_geom::albedo`).
-    pub const ALBEDO_CONDUCTOR_ROUGHNESSES: u32 = luxel_geom::albedo::CONDUCTOR_ROUGHNESSES;
-    /// Cosines in the albedo tables of coat and glass (`luxel_geom::albedo`).
+    /// Cosines in every albedo table (`luxel_geom::albedo`).
     pub const ALBEDO_COSINES: u32 = luxel_geom::albedo::COSINES;
-    /// Roughnesses in the albedo tables of coat and glass (`luxel_geom::albedo`).
+    /// Roughnesses in every albedo table.
     pub const ALBEDO_ROUGHNESSES: u32 = luxel_geom::albedo::ROUGHNESSES;
-    /// Roughnesses in the averages of the conductor's albedo table (`luxel_geom::albedo`).
-    pub const ALBEDO_CONDUCTOR_AVERAGE_ROUGHNESSES: u32 = luxel_geom::albedo::CONDUCTOR_AVERAGE_ROUGHNESSES;
-    /// Roughnesses in the averages of coat and glass (`luxel_geom::albedo`).
+    /// Roughnesses in the averages of the albedo tables.
     pub const ALBEDO_AVERAGE_ROUGHNESSES: u32 = luxel_geom::albedo::AVERAGE_ROUGHNESSES;
-    /// Indices of refraction in the coat's albedo table (`luxel_geom::albedo`).
-    pub const ALBEDO_COAT_INDICES: u32 = luxel_geom::albedo::COAT_INDICES;
-    /// Indices of refraction in the albedo table of glass (`luxel_geom::albedo`).
+    /// Indices of refraction in the albedo tables' odds of reflection.
+    pub const ALBEDO_ODDS_INDICES: u32 = luxel_geom::albedo::ODDS_INDICES;
+    /// Indices of refraction in the albedo table of glass.
     pub const ALBEDO_GLASS_INDICES: u32 = luxel_geom::albedo::GLASS_INDICES;
-    /// Where the averages of the conductor's albedo table start (`luxel_geom::albedo`).
+    /// Where the averages of the conductor's albedo table start.
     pub const ALBEDO_CONDUCTOR_AVERAGES: u32 = luxel_geom::albedo::CONDUCTOR_AVERAGES;
     /// Where the rim's albedo table starts.
     pub const ALBEDO_RIM: u32 = luxel_geom::albedo::RIM;
     /// Where the rim's average albedos start.
     pub const ALBEDO_RIM_AVERAGES: u32 = luxel_geom::albedo::RIM_AVERAGES;
-    /// Where the coat's albedo table starts (`luxel_geom::albedo`).
-    pub const ALBEDO_COAT: u32 = luxel_geom::albedo::COAT;
-    /// Where the averages of the coat's albedo table start (`luxel_geom::albedo`).
-    pub const ALBEDO_COAT_AVERAGES: u32 = luxel_geom::albedo::COAT_AVERAGES;
-    /// Where the albedo table of glass starts (`luxel_geom::albedo`).
+    /// Where the odds of reflection start.
+    pub const ALBEDO_ODDS: u32 = luxel_geom::albedo::ODDS;
+    /// Where the averages of what passes start.
+    pub const ALBEDO_PASSING_AVERAGES: u32 = luxel_geom::albedo::PASSING_AVERAGES;
+    /// Where the albedo table of glass starts.
     pub const ALBEDO_GLASS: u32 = luxel_geom::albedo::GLASS;
-    /// Where the averages of the albedo table of glass start (`luxel_geom::albedo`).
+    /// Where the averages of the albedo table of glass start.
     pub const ALBEDO_GLASS_AVERAGES: u32 = luxel_geom::albedo::GLASS_AVERAGES;
     /// Random-number blocks of the camera.
     pub const CAMERA_BLOCKS: u32 = luxel_geom::rng::CAMERA_BLOCKS;
@@ -101,6 +95,9 @@ shared_const! {
     pub const MATERIAL_PRINCIPLED: u32 = 4;
     /// [`MaterialRecord::kind`](crate::MaterialRecord): shows `color` and scatters nothing.
     pub const MATERIAL_UNLIT: u32 = 5;
+    /// [`SurfacePoint::kind`](crate::SurfacePoint): no border to the path that meets it, which goes straight on. No
+    /// material is of this kind.
+    pub const MATERIAL_NO_BORDER: u32 = 6;
     /// [`MaterialRecord::flags`](crate::MaterialRecord): `emission` is not black.
     pub const MATERIAL_EMISSIVE: u32 = 1;
     /// [`MaterialRecord::flags`](crate::MaterialRecord): what is less opaque than `alpha_cutoff` is not there.

@@ -95,7 +95,7 @@ features! {
     Dielectric {
         name: "dielectric",
         used: "a surface is glass", unused: "no surface is glass",
-        symbols: &["sample_dielectric", "refract_dielectric"],
+        symbols: &["sample_dielectric"],
         bindings: &[],
         counters: &[Counter::DielectricBounces],
         nodes: &[],
@@ -188,7 +188,7 @@ features! {
         name: "nested_media",
         used: "there are several clear bodies, one of which may hold another",
         unused: "there are no two clear bodies",
-        symbols: &["is_no_border", "surrounding", "immersed"],
+        symbols: &["immersed"],
         bindings: &[],
         counters: &[Counter::NestedBorders],
         nodes: &[],

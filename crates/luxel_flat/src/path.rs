@@ -63,7 +63,8 @@ shared_struct! {
 }
 
 shared_struct! {
-    /// The surface at the end of a path's ray: its place, its frame, and its material with textures applied.
+    /// The surface at the end of a path's ray: its place, its frame, its material with textures applied, and what it is
+    /// to a path that is in the bodies of [`Path::media`].
     pub struct SurfacePoint {
         /// The point, tracer space.
         pub point: [f32; 3],
@@ -71,7 +72,7 @@ shared_struct! {
         pub light: u32,
         /// Bound on the error of each component of `point`.
         pub error: [f32; 3],
-        /// `MATERIAL_LAMBERT`, ….
+        /// `MATERIAL_LAMBERT`, …, or `MATERIAL_NO_BORDER`.
         pub kind: u32,
         /// Unit geometric normal, outwards.
         pub normal: [f32; 3],
@@ -93,14 +94,14 @@ shared_struct! {
         pub specular_color: [f32; 3],
         /// As in `MaterialRecord`.
         pub specular: f32,
-        /// As in `MaterialRecord`.
+        /// Index of refraction over that of what is around the body.
         pub ior: f32,
         /// As in `MaterialRecord`.
         pub clearcoat: f32,
         /// As in `MaterialRecord`.
         pub clearcoat_roughness: f32,
-        /// Material slot.
-        pub material: u32,
+        /// Material slot of the clear body that a ray enters or leaves which goes on beyond the surface, or `NONE`.
+        pub body: u32,
     }
 }
 

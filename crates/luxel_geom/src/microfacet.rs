@@ -122,19 +122,14 @@ pub fn reflection_pdf<R: Real>(wo: R::Vec3, h: R::Vec3, alpha: R) -> R {
 /// The microfacet normal that mirrors one direction into the other, on the normal's side. Zero if they are opposite.
 #[inline]
 pub fn reflection_normal<R: Real>(wo: R::Vec3, wi: R::Vec3) -> R::Vec3 {
-    facing_up::<R>(wo + wi)
+    refraction_normal::<R>(wo, wi, R::ONE)
 }
 
 /// The microfacet normal that refracts `wo` into `wi`, on the normal's side; `eta` is the index on `wi`'s side over
 /// that on `wo`'s side. Zero if no normal does.
 #[inline]
 pub fn refraction_normal<R: Real>(wo: R::Vec3, wi: R::Vec3, eta: R) -> R::Vec3 {
-    facing_up::<R>(wo + wi * eta)
-}
-
-/// A vector scaled to length one, and turned to positive z; zero stays zero.
-#[inline]
-fn facing_up<R: Real>(h: R::Vec3) -> R::Vec3 {
+    let h = wo + wi * eta;
     let length = h.length();
     if length == R::ZERO {
         return h;

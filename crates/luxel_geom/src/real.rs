@@ -296,7 +296,7 @@ macro_rules! impl_real {
             }
             #[inline]
             fn axis(self, axis: usize) -> $real {
-                self[axis]
+                self.to_array()[axis]
             }
             #[inline]
             fn dot(self, other: Self) -> $real {

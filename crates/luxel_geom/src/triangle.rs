@@ -90,7 +90,7 @@ impl<R: Real> TriangleRay<R> {
     #[inline]
     pub fn new(ray: &SlabRay<R>) -> Self {
         let axis = largest_axis::<R>(ray.direction);
-        let inv_z = R::ONE / ray.direction.axis(axis);
+        let inv_z = ray.inv_direction.axis(axis);
         let along = |v: R::Vec3, k: usize| v.axis((axis + 1 + k) % 3);
         Self {
             origin: [0, 1, 2].map(|k| R::Lanes::splat(along(ray.origin, k))),
@@ -108,12 +108,11 @@ impl<R: Real> TriangleRay<R> {
         corners: &Corners<R>,
         exclude: Exclude,
     ) -> Option<TriangleHit<R>> {
-        let s = self.shear(corners);
-        let edges = edges(&s)?;
+        let edges = edges(&self.shear(corners))?;
         if exclude != Exclude::Nothing {
             return None;
         }
-        self.hit(ray, corners, &s, edges)
+        self.hit(ray, Corners(corners.0), edges)
     }
 
     /// The corners relative to the origin, brought into the ray's frame.
@@ -137,14 +136,12 @@ impl<R: Real> TriangleRay<R> {
     }
 
     /// The hit of a ray that passes between the edges, if its parameter is wanted.
-    #[inline]
-    fn hit(
-        &self,
-        ray: &SlabRay<R>,
-        corners: &Corners<R>,
-        s: &Sheared<R>,
-        [e0, e1, e2]: [R; 3],
-    ) -> Option<TriangleHit<R>> {
+    ///
+    /// Few tests come so far. It stands aside and shears the corners again, so that what it needs need not stand in memory
+    /// in the others.
+    #[inline(never)]
+    fn hit(&self, ray: &SlabRay<R>, corners: Corners<R>, [e0, e1, e2]: [R; 3]) -> Option<TriangleHit<R>> {
+        let s = &self.shear(&corners);
         // In this order a triangle and the same seen from behind (two vertices swapped) give the same bits.
         let det = e0 + (e1 + e2);
         if det == R::ZERO {
@@ -186,10 +183,14 @@ fn edges<R: Real>(s: &Sheared<R>) -> Option<[R; 3]> {
 }
 
 /// The parameter of a hit that is not behind the origin. Where its sign may be wrong the plane decides, and a hit that
-/// is ahead nevertheless lies within the error.
+/// is ahead nevertheless lies within the error. Most that are not ahead are the wall that a ray has just left; they lie
+/// behind by more than the error, and need not ask.
 fn ahead<R: Real>(t: R, error: R, is_plane_ahead: impl FnOnce() -> bool) -> Option<R> {
     if t > error {
         return Some(t);
+    }
+    if t < -error {
+        return None;
     }
     is_plane_ahead().then(|| if t > R::ZERO { t } else { error })
 }
@@ -311,5 +312,54 @@ pub fn area_normal<R: Real>(v: &[R::Vec3; 3]) -> R::Vec3 {
         edges[2].cross(edges[0])
     } else {
         edges[0].cross(edges[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use luxel_testkit::Random;
+
+    use super::*;
+
+    /// A triangle of any size, one in three a needle, and a ray whose line runs through it, from close to its plane.
+    fn beside(random: &mut Random, i: u32) -> ([Vec3; 3], SlabRay<f32>) {
+        let size = random.log_between(1e-6, 1e6);
+        let far = if i.is_multiple_of(4) { 0.0 } else { random.log_between(1e-2, 1e4) };
+        let middle = random.direction() * (far * size);
+        let mut v = [(); 3].map(|()| middle + random.point(size));
+        if i.is_multiple_of(3) {
+            let width = size * random.log_between(1e-5, 1e-2);
+            v[2] = v[1] + random.point(width);
+        }
+        let (u, w) = (random.uniform(), random.uniform());
+        let target = v[0] + ((v[1] - v[0]) * (1.0 - w) + (v[2] - v[0]) * w) * u;
+        let direction = random.direction();
+        let away = size * random.log_between(1e-8, 10.0) * random.between(-1.0, 1.0);
+        let origin = target + direction * away;
+        (v, SlabRay::new(&crate::Ray::new(origin, direction)))
+    }
+
+    #[test]
+    fn what_lies_behind_by_more_than_its_error_lies_behind_by_its_plane() {
+        let mut random = Random::new(7);
+        let (mut behind, mut undecided) = (0, 0);
+        for i in 0..1_000_000 {
+            let (v, ray) = beside(&mut random, i);
+            let frame = TriangleRay::new(&ray);
+            let s = frame.shear(&Corners::new(&v));
+            let Some([e0, e1, e2]) = edges::<f32>(&s) else { continue };
+            let det = e0 + (e1 + e2);
+            let Some(weights) = inside(e0 / det, e1 / det, e2 / det) else { continue };
+            let z = s.z.to_array();
+            let t = (weights[0] * z[0] + (weights[1] * z[1] + weights[2] * z[2])) * frame.inv_z;
+            let error = t_error(&s, det, frame.inv_z);
+            if t < -error {
+                behind += 1;
+                assert!(!is_plane_ahead::<f32>(&ray, &v), "{t:e} {error:e} {v:?} {ray:?}");
+            }
+            undecided += u32::from(t.abs() <= error);
+        }
+        assert!(behind > 200_000 && undecided > 20_000, "{behind} {undecided}");
     }
 }

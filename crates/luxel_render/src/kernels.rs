@@ -46,9 +46,9 @@ pub const KERNELS: &[KernelRow] = &[
     KernelRow { kernel: INTERSECT, feature: None, max_functions: 80 },
     KernelRow { kernel: SURFACE, feature: None, max_functions: 60 },
     KernelRow { kernel: FIRST_HITS, feature: Some(Feature::Aovs), max_functions: 24 },
-    KernelRow { kernel: SHADE, feature: None, max_functions: 155 },
+    KernelRow { kernel: SHADE, feature: None, max_functions: 140 },
     KernelRow { kernel: SHADOW, feature: Some(Feature::Lights), max_functions: 80 },
-    KernelRow { kernel: SCATTER, feature: None, max_functions: 120 },
+    KernelRow { kernel: SCATTER, feature: None, max_functions: 110 },
     KernelRow { kernel: ACCUMULATE, feature: None, max_functions: 12 },
     KernelRow { kernel: RESOLVE, feature: None, max_functions: 24 },
 ];

@@ -106,7 +106,7 @@ pub struct Principled {
     pub ior: f32,
     /// Strength of the dielectric reflection, in [0, 1].
     pub specular: f32,
-    /// Tint of the dielectric reflection at normal incidence.
+    /// Tint of the dielectric reflection at normal incidence, of any size: more than all is not reflected.
     pub specular_color: Vec3,
     /// Share of the dielectric base that is clear, in [0, 1].
     pub transmission: f32,

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use serde::Serialize;
+
 /// The most lines of a list of the report.
 const MOST_LINES: usize = 32;
 
@@ -11,9 +13,22 @@ const MOST_OF_A_KIND: usize = 4;
 /// The most characters of a line.
 const LONGEST_LINE: usize = 400;
 
+/// A scene of a file that may have several.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+pub struct SceneEntry {
+    /// What it is called in the file, which may be anything.
+    pub name: Option<String>,
+    /// True if it is shown when nobody asks for another.
+    pub is_default: bool,
+    /// True if it was loaded.
+    pub is_shown: bool,
+}
+
 /// What the user should be told about a scene that was loaded.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct LoadReport {
+    /// Every scene of a glTF model, in the order of their numbers; empty for other files.
+    pub scenes: Vec<SceneEntry>,
     /// What of a model the scene shows, such as `3 meshes with 70 triangles`.
     pub used: Vec<String>,
     /// What a model has and the scene does not show, once each, such as `KHR_materials_sheen (2 materials)`.

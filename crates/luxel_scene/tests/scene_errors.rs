@@ -94,8 +94,8 @@ const ENTITY_MISTAKES: &[(&str, &str, &str)] = &[
     ("material.surface.specular", "material: (surface: Principled((specular: 1.5)))", "in 0.0 to 1.0"),
     (
         "material.surface.specular_color",
-        "material: (surface: Principled((specular_color: (0, 0, 2))))",
-        "in 0 to 1",
+        "material: (surface: Principled((specular_color: (0, 0, -2))))",
+        "not negative",
     ),
     (
         "material.surface.transmission",

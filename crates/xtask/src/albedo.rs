@@ -14,8 +14,10 @@ use crate::machine;
 
 /// Quadrature points per side of the square.
 const POINTS: usize = 96;
-/// Intervals of an average over the places of cosines, so many that the cells of every table end where one of them does.
-const AVERAGE_INTERVALS: u32 = 63 * 31;
+/// Points in each cell of the cosines' axis, for averages.
+const AVERAGE_POINTS: usize = 8;
+/// What an infinite index of refraction is computed at.
+const LARGEST_INDEX: f64 = 1e6;
 
 /// Points in `[0, 1]` of one dimension, with weights.
 type Rule = Vec<(f64, f64)>;
@@ -52,36 +54,38 @@ pub(crate) fn write() -> Result<()> {
 /// those of losses are written as their square roots.
 fn tables() -> Vec<f32> {
     let rule = Square::new();
+    let cells = gauss_legendre(AVERAGE_POINTS);
     let mut tables = vec![0.0; albedo::LENGTH as usize];
-    let conductor = [1, albedo::CONDUCTOR_ROUGHNESSES, albedo::CONDUCTOR_COSINES];
-    fill(&mut tables, 0, conductor, |_, roughness, cos| rule.mean(cos, roughness, |s| 1.0 - s.mirrored()));
-    let rim = [1, albedo::ROUGHNESSES, albedo::COSINES];
-    fill(&mut tables, albedo::RIM, rim, |_, r, cos| rule.rim(r, cos));
-    let coat = [albedo::COAT_INDICES, albedo::ROUGHNESSES, albedo::COSINES];
-    fill(&mut tables, albedo::COAT, coat, |place, roughness, cos| rule.coat(place, roughness, cos));
-    let glass = [albedo::GLASS_INDICES, albedo::ROUGHNESSES, albedo::COSINES];
-    fill(&mut tables, albedo::GLASS, glass, |place, roughness, cos| {
+    fill(&mut tables, 0, 1, |_, roughness, cos| rule.mean(cos, roughness, |s| 1.0 - s.mirrored()));
+    fill(&mut tables, albedo::RIM, 1, |_, roughness, cos| rule.rim(roughness, cos));
+    fill(&mut tables, albedo::ODDS, albedo::ODDS_INDICES, |place, roughness, cos| {
+        rule.odds(odds_index(place), roughness, cos)
+    });
+    fill(&mut tables, albedo::GLASS, albedo::GLASS_INDICES, |place, roughness, cos| {
         let eta = axes::glass_index_at(place);
         rule.mean(cos, roughness, |s| 1.0 - s.through_glass(eta))
     });
-    averages(
-        &mut tables,
-        albedo::CONDUCTOR_AVERAGES,
-        [1, albedo::CONDUCTOR_AVERAGE_ROUGHNESSES],
-        |t, _, r| average(r, |c| lookup::conductor_loss(t, c, r)).sqrt(),
-    );
-    let rim = [1, albedo::AVERAGE_ROUGHNESSES];
-    averages(&mut tables, albedo::RIM_AVERAGES, rim, |t, _, r| average(r, |c| lookup::rim_albedo(t, c, r)));
-    let coat = [albedo::COAT_INDICES, albedo::AVERAGE_ROUGHNESSES];
-    averages(&mut tables, albedo::COAT_AVERAGES, coat, |t, p, r| {
-        let eta = axes::coat_index_at(p);
-        average(r, |c| lookup::coat_albedo(t, c, r, eta)) - lookup::level_average(t, r, eta)
+    averages(&mut tables, albedo::CONDUCTOR_AVERAGES, 1, |t, _, r| {
+        average(&cells, r, |c| lookup::conductor_loss(t, c, r)).sqrt()
     });
-    let glass = [albedo::GLASS_INDICES, albedo::AVERAGE_ROUGHNESSES];
-    averages(&mut tables, albedo::GLASS_AVERAGES, glass, |t, p, r| {
-        average(r, |c| lookup::glass_loss(t, c, r, axes::glass_index_at(p))).sqrt()
+    averages(&mut tables, albedo::RIM_AVERAGES, 1, |t, _, r| {
+        average(&cells, r, |c| lookup::rim_albedo(t, c, r))
+    });
+    averages(&mut tables, albedo::PASSING_AVERAGES, albedo::ODDS_INDICES, |t, place, r| {
+        let eta = odds_index(place);
+        let passing =
+            |c| (1.0 - lookup::conductor_loss(t, c, r)) * (1.0 - lookup::mean_reflectance(t, c, r, eta));
+        average(&cells, r, passing) / lookup::head_on_transmittance(eta)
+    });
+    averages(&mut tables, albedo::GLASS_AVERAGES, albedo::GLASS_INDICES, |t, place, r| {
+        average(&cells, r, |c| lookup::glass_loss(t, c, r, axes::glass_index_at(place))).sqrt()
     });
     tables
+}
+
+/// The index at a place of the table of odds. At both ends the odds are taken in the limit.
+fn odds_index(place: f64) -> f64 {
+    axes::thin_index_at(place.max(1e-3)).min(LARGEST_INDEX)
 }
 
 /// The place of an entry of an axis.
@@ -90,18 +94,13 @@ fn place(index: u32, count: u32) -> f64 {
 }
 
 /// Writes value(place of the index, roughness, cosine) over the entries of a table from `first` on.
-fn fill(
-    tables: &mut [f32],
-    first: u32,
-    [indices, rows, columns]: [u32; 3],
-    value: impl Fn(f64, f64, f64) -> f64,
-) {
+fn fill(tables: &mut [f32], first: u32, indices: u32, value: impl Fn(f64, f64, f64) -> f64) {
     let mut entries = tables.iter_mut().skip(first as usize);
     for k in 0..indices {
-        for i in 0..rows {
-            let roughness = axes::roughness_at(place(i, rows));
-            for (j, entry) in (0..columns).zip(&mut entries) {
-                let cos = axes::cosine_at(place(j, columns), roughness);
+        for i in 0..albedo::ROUGHNESSES {
+            let roughness = axes::roughness_at(place(i, albedo::ROUGHNESSES));
+            for (j, entry) in (0..albedo::COSINES).zip(&mut entries) {
+                let cos = axes::cosine_at(place(j, albedo::COSINES), roughness);
                 *entry = value(place(k, indices), roughness, cos) as f32;
             }
         }
@@ -109,12 +108,8 @@ fn fill(
 }
 
 /// Writes value(place of the index, roughness) over the entries of a table of averages from `first` on.
-fn averages(
-    tables: &mut [f32],
-    first: u32,
-    [indices, rows]: [u32; 2],
-    value: impl Fn(&[f32], f64, f64) -> f64,
-) {
+fn averages(tables: &mut [f32], first: u32, indices: u32, value: impl Fn(&[f32], f64, f64) -> f64) {
+    let rows = albedo::AVERAGE_ROUGHNESSES;
     for k in 0..indices {
         for i in 0..rows {
             let mean = value(tables, place(k, indices), axes::roughness_at(place(i, rows)));
@@ -125,20 +120,17 @@ fn averages(
     }
 }
 
-/// 2 ∫ value · cos dcos, by Gauss's two points in intervals that are even on the axis of the tables: a lobe's losses stand
-/// at cosines of about α, where that axis is dense.
-fn average(roughness: f64, value: impl Fn(f64) -> f64) -> f64 {
-    let width = 1.0 / f64::from(AVERAGE_INTERVALS);
-    let half = 0.5 / 3.0f64.sqrt();
+/// 2 ∫ value · cos dcos, by a rule for each cell of the cosines' axis: between entries a lookup is smooth.
+fn average(rule: &Rule, roughness: f64, value: impl Fn(f64) -> f64) -> f64 {
+    let cells = albedo::COSINES - 1;
     let at = |place: f64| {
         let cos = axes::cosine_at(place, roughness);
-        value(cos) * cos * cosine_slope(place, roughness)
+        2.0 * value(cos) * cos * cosine_slope(place, roughness)
     };
-    let sum: f64 = (0..AVERAGE_INTERVALS)
-        .map(|n| f64::from(n) + 0.5)
-        .map(|middle| at((middle - half) * width) + at((middle + half) * width))
-        .sum();
-    sum * width
+    let cell = |n: u32| {
+        rule.iter().map(|(x, weight)| weight * at((f64::from(n) + x) / f64::from(cells))).sum::<f64>()
+    };
+    (0..cells).map(cell).sum::<f64>() / f64::from(cells)
 }
 
 /// The derivative of `axes::cosine_at` by the place.
@@ -181,11 +173,14 @@ impl Square {
         albedo - schlick::schlick_weight(lookup::typical_cosine(cos, roughness))
     }
 
-    /// An entry of the coat's table. At η = 1 the quotient is taken in the limit.
-    fn coat(&self, place: f64, roughness: f64, cos: f64) -> f64 {
-        let eta = axes::coat_index_at(place.max(1e-3));
-        let albedo = self.mean(cos, roughness, |s| s.reflectance(eta) * s.mirrored());
-        albedo / optics::fresnel_dielectric(lookup::typical_cosine(cos, roughness), eta).reflectance
+    /// An entry of the table of odds.
+    fn odds(&self, eta: f64, roughness: f64, cos: f64) -> f64 {
+        let reflected = self.mean(cos, roughness, |s| s.reflectance(eta) * s.mirrored());
+        let passing = self.mean(cos, roughness, |s| (1.0 - s.reflectance(eta)) * s.mirrored());
+        let typical = optics::fresnel_dielectric(lookup::typical_cosine(cos, roughness), eta).reflectance;
+        // Under a level view of the smoothest surface nothing passes, nor does it there.
+        let least = f64::MIN_POSITIVE;
+        (reflected / passing.max(least)) * ((1.0 - typical).max(least) / typical)
     }
 }
 

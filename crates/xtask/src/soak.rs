@@ -24,8 +24,9 @@ struct Report {
 }
 
 /// Test targets with cases that are larger in the soak run: package, and target.
-const TARGETS: [(&str, &str); 6] = [
+const TARGETS: [(&str, &str); 7] = [
     ("luxel", "hard_cases"),
+    ("luxel", "edit_loop"),
     ("luxel", "lights"),
     ("luxel", "samples"),
     ("luxel", "reference_renders"),

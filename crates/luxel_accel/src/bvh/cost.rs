@@ -1,5 +1,6 @@
 //! What a tree is expected to cost a ray.
 use luxel_flat::BvhNode;
+use luxel_geom::Aabb;
 
 /// Expected cost of a ray that meets the root's box, a step through an inner node and a primitive test costing 1 each:
 /// the surface area heuristic over the whole tree (MacDonald, Booth 1990, "Heuristics for ray tracing using space
@@ -11,9 +12,23 @@ pub fn sah_cost(nodes: &[BvhNode]) -> f64 {
     nodes.iter().map(|node| share(node) * f64::from(node.primitives().1.max(1))).sum()
 }
 
+/// The part of [`sah_cost`] that no tree over the same primitives can save, given the root and the primitives' boxes: a
+/// test of each by the rays that meet its own box.
+pub(crate) fn floor_cost(root: &BvhNode, boxes: impl Iterator<Item = Aabb<f32>>) -> f64 {
+    let whole = half_area(root);
+    let share = |one: Aabb<f32>| {
+        if whole > 0.0 { half_area_between(one.lo.into(), one.hi.into()) / whole } else { 1.0 }
+    };
+    boxes.map(share).sum()
+}
+
 /// Half the surface of a node's box, in numbers that do not overflow.
 pub(super) fn half_area(node: &BvhNode) -> f64 {
-    let e = [0, 1, 2].map(|k| f64::from(node.hi[k]) - f64::from(node.lo[k]));
+    half_area_between(node.lo, node.hi)
+}
+
+fn half_area_between(lo: [f32; 3], hi: [f32; 3]) -> f64 {
+    let e = [0, 1, 2].map(|k| f64::from(hi[k]) - f64::from(lo[k]));
     e[0] * e[1] + e[1] * e[2] + e[2] * e[0]
 }
 
@@ -32,6 +47,11 @@ mod tests {
         // Half areas 5, 3, 3.
         assert!((sah_cost(&nodes) - (1.0 + 0.6 * 3.0 + 0.6)).abs() < 1e-12);
         assert_eq!(sah_cost(&[]), 0.0);
+        let boxes = [[0.0, 1.0], [0.0, 1.0], [0.5, 1.0]].map(|[lo, hi]| Aabb::<f32> {
+            lo: glam::Vec3::new(lo, 0.0, 0.0),
+            hi: glam::Vec3::new(hi, 1.0, 1.0),
+        });
+        assert!((floor_cost(&nodes[0], boxes.into_iter()) - (0.6 + 0.6 + 0.4)).abs() < 1e-12);
         let flat = BvhNode { leaf: BvhNode::pack_leaf(0, 4), ..BvhNode::default() };
         assert_eq!(sah_cost(&[flat]), 4.0);
     }

@@ -7,6 +7,9 @@ use luxel_flat::{
 use luxel_geom::albedo::TABLES;
 use luxel_geom::{Real, Vector};
 
+/// What importers take for an infinite index (glTF's 0).
+const INFINITE_INDEX: f32 = 1e4;
+
 /// White, with glTF's defaults.
 pub(crate) fn white(kind: u32) -> MaterialRecord {
     MaterialRecord {
@@ -33,6 +36,10 @@ pub(crate) fn glass(roughness: f32, ior: f32) -> MaterialRecord {
 
 fn opaque(roughness: f32, ior: f32) -> MaterialRecord {
     MaterialRecord { ior, ..principled(roughness) }
+}
+
+fn tinted(specular_color: [f32; 3], base: MaterialRecord) -> MaterialRecord {
+    MaterialRecord { specular_color, ..base }
 }
 
 pub(crate) fn thin(roughness: f32) -> MaterialRecord {
@@ -66,14 +73,20 @@ pub(crate) fn lossless(roughness: f32) -> Vec<(&'static str, MaterialRecord)> {
         ("metal", metal(roughness)),
         ("half metal", MaterialRecord { metallic: 0.5, ..principled(roughness) }),
         ("no reflection", MaterialRecord { specular: 0.0, ..principled(roughness) }),
-        ("tinted reflection", MaterialRecord { specular_color: [1.0, 0.5, 0.0], ..principled(roughness) }),
+        ("tinted reflection", tinted([1.0, 0.5, 0.0], opaque(roughness, 1.5))),
+        ("stronger reflection", tinted([2.0, 5.0, 30.0], opaque(roughness, 1.5))),
+        ("tinted reflection of index 10", tinted([1.0, 0.5, 0.0], opaque(roughness, 10.0))),
         ("glass", glass(roughness, 1.5)),
         ("water", glass(roughness, 1.33)),
         ("diamond", glass(roughness, 2.4)),
+        ("index 1.05", opaque(roughness, 1.05)),
         ("index 3", opaque(roughness, 3.0)),
         ("index 10", opaque(roughness, 10.0)),
+        ("infinite index", opaque(roughness, INFINITE_INDEX)),
+        ("glass of index 1.05", glass(roughness, 1.05)),
         ("glass of index 3", glass(roughness, 3.0)),
         ("glass of index 10", glass(roughness, 10.0)),
+        ("glass of infinite index", glass(roughness, INFINITE_INDEX)),
         ("thin glass", thin(roughness)),
     ]
 }

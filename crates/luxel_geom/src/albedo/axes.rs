@@ -46,18 +46,18 @@ pub fn cosine_at<R: Real>(place: R, roughness: R) -> R {
     root * root
 }
 
-/// Place of a coat's index, which is at least 1: s / (s + √(1 − s)).
+/// Place of an index as seen from the thinner side, which is at least 1: s / (s + √(1 − s)).
 #[inline]
-pub fn coat_index_place<R: Real>(eta: R) -> R {
+pub fn thin_index_place<R: Real>(eta: R) -> R {
     let root = ((eta - R::ONE) / (eta + R::ONE)).max(R::ZERO).sqrt();
     // 1 − s² without cancellation.
     let gap = (R::from_f64(2.0) / (eta + R::ONE)).min(R::ONE);
     root / (root + (gap / (R::ONE + root)).sqrt())
 }
 
-/// The coat's index at a place.
+/// The index of at least 1 at a place.
 #[inline]
-pub fn coat_index_at<R: Real>(place: R) -> R {
+pub fn thin_index_at<R: Real>(place: R) -> R {
     let two = R::from_f64(2.0);
     let rest = two * (R::ONE - place);
     let sum = place + (place * place + rest * rest).sqrt();
@@ -71,7 +71,7 @@ pub fn coat_index_at<R: Real>(place: R) -> R {
 pub fn glass_index_place<R: Real>(eta: R) -> R {
     let middle = R::from_f64(GLASS_MIDDLE);
     if eta >= R::ONE {
-        return middle + (R::ONE - middle) * coat_index_place(eta);
+        return middle + (R::ONE - middle) * thin_index_place(eta);
     }
     let root = ((R::ONE - eta) / (R::ONE + eta)).sqrt().min(R::ONE);
     middle - middle * (R::from_f64(2.0) * root / (R::ONE + root))
@@ -82,7 +82,7 @@ pub fn glass_index_place<R: Real>(eta: R) -> R {
 pub fn glass_index_at<R: Real>(place: R) -> R {
     let middle = R::from_f64(GLASS_MIDDLE);
     if place >= middle {
-        return coat_index_at((place - middle) / (R::ONE - middle));
+        return thin_index_at((place - middle) / (R::ONE - middle));
     }
     let from_middle = R::ONE - place / middle;
     let root = from_middle / (R::from_f64(2.0) - from_middle);

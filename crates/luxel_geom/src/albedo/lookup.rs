@@ -31,38 +31,40 @@ fn entry<R: Real>(tables: &[f32], index: u32) -> R {
     R::from_f32(tables.get(index as usize).copied().unwrap_or(0.0))
 }
 
-/// Entry of a table with the axes roughness and index, at two places.
-fn plane<R: Real>(tables: &[f32], first: u32, rows: u32, columns: u32, row: R, column: R) -> R {
+/// Entry of a table with `columns` entries in each of `rows` rows, at two places.
+fn plane<R: Real>(tables: &[f32], first: u32, [rows, columns]: [u32; 2], [row, column]: [R; 2]) -> R {
     let (row, column) = (Between::at(row, rows), Between::at(column, columns));
     row.mix(|i| column.mix(|j| entry(tables, first + i * columns + j)))
 }
 
-/// An average loss, from the `count` square roots of its row.
-fn average_loss<R: Real>(tables: &[f32], first: u32, count: u32, roughness: R) -> R {
-    let column = Between::at(axes::roughness_place(roughness), count);
-    let root: R = column.mix(|i| entry(tables, first + i));
-    root * root
+/// Entry of the table with the axes roughness and cosine that starts at `first`.
+fn directional<R: Real>(tables: &[f32], first: u32, cos: R, roughness: R) -> R {
+    let places = [axes::roughness_place(roughness), axes::cosine_place(cos, roughness)];
+    plane(tables, first, [super::ROUGHNESSES, super::COSINES], places)
 }
 
-/// Entry of a table of coat or glass.
-fn volume<R: Real>(tables: &[f32], first: u32, indices: u32, index: R, cos: R, roughness: R) -> R {
-    let (row, column) = (axes::roughness_place(roughness), axes::cosine_place(cos, roughness));
-    let size = super::ROUGHNESSES * super::COSINES;
-    Between::at(index, indices)
-        .mix(|k| plane(tables, first + k * size, super::ROUGHNESSES, super::COSINES, row, column))
+/// Entry of a table of averages with one row.
+fn average<R: Real>(tables: &[f32], first: u32, roughness: R) -> R {
+    let column = Between::at(axes::roughness_place(roughness), super::AVERAGE_ROUGHNESSES);
+    column.mix(|i| entry(tables, first + i))
+}
+
+/// An average loss, from its square roots.
+fn average_loss<R: Real>(tables: &[f32], first: u32, roughness: R) -> R {
+    let root = average(tables, first, roughness);
+    root * root
 }
 
 /// Share of the light from a direction that single scattering at a perfect conductor (F = 1) loses.
 #[inline]
 pub fn conductor_loss<R: Real>(tables: &[f32], cos: R, roughness: R) -> R {
-    let (row, column) = (axes::roughness_place(roughness), axes::cosine_place(cos, roughness));
-    plane(tables, 0, super::CONDUCTOR_ROUGHNESSES, super::CONDUCTOR_COSINES, row, column)
+    directional(tables, 0, cos, roughness)
 }
 
 /// [`conductor_loss`] averaged over cosine-weighted directions.
 #[inline]
 pub fn conductor_loss_average<R: Real>(tables: &[f32], roughness: R) -> R {
-    average_loss(tables, super::CONDUCTOR_AVERAGES, super::CONDUCTOR_AVERAGE_ROUGHNESSES, roughness)
+    average_loss(tables, super::CONDUCTOR_AVERAGES, roughness)
 }
 
 /// A cosine that microfacets have to a direction: under a level view none lies level, and few lie at Brewster's angle,
@@ -76,55 +78,55 @@ pub fn typical_cosine<R: Real>(cos: R, roughness: R) -> R {
 /// (1 − cos)⁵.
 #[inline]
 pub fn rim_albedo<R: Real>(tables: &[f32], cos: R, roughness: R) -> R {
-    let (row, column) = (axes::roughness_place(roughness), axes::cosine_place(cos, roughness));
-    let beyond = plane(tables, super::RIM, super::ROUGHNESSES, super::COSINES, row, column);
+    let beyond = directional(tables, super::RIM, cos, roughness);
     (beyond + schlick::schlick_weight(typical_cosine(cos, roughness))).clamped(R::ZERO, R::ONE)
 }
 
 /// [`rim_albedo`] averaged over cosine-weighted directions.
 #[inline]
 pub fn rim_albedo_average<R: Real>(tables: &[f32], roughness: R) -> R {
-    let column = Between::at(axes::roughness_place(roughness), super::AVERAGE_ROUGHNESSES);
-    column.mix(|i| entry(tables, super::RIM_AVERAGES + i))
+    average(tables, super::RIM_AVERAGES, roughness)
 }
 
-/// Share of the light from a direction that a rough dielectric coat of index `eta` ≥ 1 reflects.
+/// Of the light from a direction that single scattering keeps, the share that microfacets of a dielectric of index
+/// `eta` ≥ 1 reflect: the albedo of a rough coat, over 1 − [`conductor_loss`].
 #[inline]
-pub fn coat_albedo<R: Real>(tables: &[f32], cos: R, roughness: R, eta: R) -> R {
+pub fn mean_reflectance<R: Real>(tables: &[f32], cos: R, roughness: R, eta: R) -> R {
     let typical = optics::fresnel_dielectric(typical_cosine(cos, roughness), eta).reflectance;
-    let index = axes::coat_index_place(eta);
-    (typical * volume(tables, super::COAT, super::COAT_INDICES, index, cos, roughness)).min(R::ONE)
+    let index = Between::at(axes::thin_index_place(eta), super::ODDS_INDICES);
+    let odds = index.mix(|k| directional(tables, super::ODDS + k * super::PLANE, cos, roughness));
+    let reflected = odds * typical;
+    reflected / (reflected + (R::ONE - typical))
 }
 
-/// [`coat_albedo`] averaged over cosine-weighted directions.
+/// (1 − [`conductor_loss`]) · (1 − [`mean_reflectance`]), what passes a coat, averaged over cosine-weighted directions.
 #[inline]
-pub fn coat_albedo_average<R: Real>(tables: &[f32], roughness: R, eta: R) -> R {
-    let (row, column) = (axes::coat_index_place(eta), axes::roughness_place(roughness));
-    let beyond =
-        plane(tables, super::COAT_AVERAGES, super::COAT_INDICES, super::AVERAGE_ROUGHNESSES, row, column);
-    (beyond + level_average(tables, roughness, eta)).clamped(R::ZERO, R::ONE)
+pub fn coat_passing_average<R: Real>(tables: &[f32], roughness: R, eta: R) -> R {
+    let places = [axes::thin_index_place(eta), axes::roughness_place(roughness)];
+    let sizes = [super::ODDS_INDICES, super::AVERAGE_ROUGHNESSES];
+    plane(tables, super::PASSING_AVERAGES, sizes, places) * head_on_transmittance(eta)
 }
 
-/// What [`coat_albedo_average`] would be if every microfacet were met head-on.
+/// 1 − ((η − 1) / (η + 1))², with all digits where that is near zero.
 #[inline]
-pub fn level_average<R: Real>(tables: &[f32], roughness: R, eta: R) -> R {
-    schlick::eta_to_f0(eta) * (R::ONE - conductor_loss_average(tables, roughness))
+pub fn head_on_transmittance<R: Real>(eta: R) -> R {
+    let gap = R::from_f64(2.0) / (eta + R::ONE);
+    gap * (R::from_f64(2.0) - gap)
 }
 
 /// Share of the light from a direction that single scattering at rough glass loses, reflection and transmission taken
 /// together; `eta` is the index on the far side over the near side.
 #[inline]
 pub fn glass_loss<R: Real>(tables: &[f32], cos: R, roughness: R, eta: R) -> R {
-    volume(tables, super::GLASS, super::GLASS_INDICES, axes::glass_index_place(eta), cos, roughness)
+    Between::at(axes::glass_index_place(eta), super::GLASS_INDICES)
+        .mix(|k| directional(tables, super::GLASS + k * super::PLANE, cos, roughness))
 }
 
 /// [`glass_loss`] averaged over cosine-weighted directions.
 #[inline]
 pub fn glass_loss_average<R: Real>(tables: &[f32], roughness: R, eta: R) -> R {
-    Between::at(axes::glass_index_place(eta), super::GLASS_INDICES).mix(|i| {
-        let first = super::GLASS_AVERAGES + i * super::AVERAGE_ROUGHNESSES;
-        average_loss(tables, first, super::AVERAGE_ROUGHNESSES, roughness)
-    })
+    Between::at(axes::glass_index_place(eta), super::GLASS_INDICES)
+        .mix(|k| average_loss(tables, super::GLASS_AVERAGES + k * super::AVERAGE_ROUGHNESSES, roughness))
 }
 
 /// The lobe that gives lost light back (Kulla and Conty 2017): loss(cos o) · loss(cos i) / (π · average loss), in 1/sr.

@@ -26,6 +26,16 @@ pub enum ImagePixels {
     RgbF32(Vec<[f32; 3]>),
 }
 
+impl ImagePixels {
+    /// Bytes that they fill.
+    pub(crate) fn bytes(&self) -> u64 {
+        match self {
+            Self::Rgba8(pixels) => size_of_val(&pixels[..]) as u64,
+            Self::RgbF32(pixels) => size_of_val(&pixels[..]) as u64,
+        }
+    }
+}
+
 /// Where an image comes from.
 #[derive(Clone, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

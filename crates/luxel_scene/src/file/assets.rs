@@ -14,9 +14,12 @@ use super::check::Flaw;
 use super::read::invalid;
 use super::record::SceneFile;
 
-/// Everything that `file`, which lies at `path`, lists; each model file is read once.
-pub(super) fn load_assets(path: &Path, file: &SceneFile) -> Result<(Assets, LoadReport), SceneError> {
-    let mut models = Models::default();
+/// Everything that `file`, which lies at `path`, lists; `models` reads each model file once and counts the images.
+pub(super) fn load_assets(
+    path: &Path,
+    file: &SceneFile,
+    mut models: Models,
+) -> Result<(Assets, LoadReport), SceneError> {
     let mut meshes = BTreeMap::new();
     for (&id, source) in &file.meshes {
         let place = format!("mesh {}", id.0);
@@ -115,4 +118,46 @@ fn resolve(scene: &Path, place: &str, path: &PathBuf) -> Result<PathBuf, SceneEr
     }
     let beside = scene.parent().unwrap_or(Path::new("")).join(path);
     canonical(&beside).map_err(|error| asset_error(scene, place, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::import::ImageBudget;
+
+    /// Three pictures of 4 KiB each.
+    const IMAGES: [&str; 3] =
+        ["1: Checker(squares: 2, a: (0, 0, 0), b: (9, 9, 9))", "2: File(\"a.png\")", "3: File(\"b.png\")"];
+
+    fn load(images: &[&str], bytes: u64) -> Result<usize, String> {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.png", "b.png"] {
+            image::RgbaImage::new(32, 32).save(folder.path().join(name)).unwrap();
+        }
+        let path = folder.path().join("a.ron");
+        let text = format!("(version: 1, images: {{{}}})", images.join(", "));
+        let file = super::super::read::options().from_str(&text).unwrap();
+        let models = Models::with_budget(ImageBudget::of(bytes));
+        let loaded = load_assets(&path, &file, models).map_err(|error| error.to_string());
+        loaded.map(|(assets, _)| assets.images().count())
+    }
+
+    #[test]
+    fn images_that_do_not_fit_together_are_refused_by_name() {
+        assert_eq!(load(&IMAGES, 12 << 10), Ok(3));
+        let message = load(&IMAGES, (12 << 10) - 1).unwrap_err();
+        let expected = "b.png: is one too many: it needs 1 MiB, and 0 MiB are left for it";
+        assert!(message.contains("a.ron: image 3: ") && message.ends_with(expected), "{message}");
+        let message = load(&IMAGES[..1], 4095).unwrap_err();
+        assert!(message.contains("a.ron: image 1: checkerboard: is one too many"), "{message}");
+    }
+
+    #[test]
+    fn an_image_made_of_others_counts_as_what_it_becomes() {
+        let masked = "1: Masked(color: \"a.png\", mask: \"b.png\")";
+        assert_eq!(load(&[masked], 8 << 10), Ok(1));
+        assert_eq!(load(&[masked, IMAGES[1]], 8 << 10), Ok(2));
+        assert!(load(&[masked, IMAGES[1], IMAGES[2]], 8 << 10).is_err());
+        assert!(load(&[masked], (8 << 10) - 1).unwrap_err().contains("a.png: is one too many"));
+    }
 }

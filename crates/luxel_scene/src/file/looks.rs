@@ -54,7 +54,7 @@ fn check_principled(principled: &Principled) -> Checked {
     share("roughness", principled.roughness)?;
     index_of_refraction(principled.ior)?;
     share("specular", principled.specular)?;
-    reflectance("material.surface.specular_color", principled.specular_color)?;
+    radiance("material.surface.specular_color", principled.specular_color)?;
     share("transmission", principled.transmission)?;
     share("clearcoat", principled.clearcoat)?;
     share("clearcoat_roughness", principled.clearcoat_roughness)?;

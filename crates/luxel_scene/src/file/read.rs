@@ -10,7 +10,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::SceneError;
-use crate::import::read_file;
+use crate::import::{Models, read_file};
 use crate::report::LoadReport;
 
 use super::assets::load_assets;
@@ -30,7 +30,7 @@ pub(crate) fn load_scene(path: &Path, world: &mut World) -> Result<LoadReport, S
     let bytes = read_file(path, MAX_SCENE_BYTES)?;
     let mut file = parse(path, bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes))?;
     let next_id = check(&mut file).map_err(|(place, flaw)| invalid(path, place, flaw))?;
-    let (assets, report) = load_assets(path, &file)?;
+    let (assets, report) = load_assets(path, &file, Models::default())?;
     fill(world, &file, next_id, assets);
     Ok(report)
 }

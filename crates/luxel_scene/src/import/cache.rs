@@ -7,20 +7,29 @@ use crate::assets::{ImageAsset, ImageSource, MeshAsset, MeshSource};
 use crate::error::SceneError;
 use crate::report::LoadReport;
 
-use super::image::{checker, read_image};
+use super::budget::ImageBudget;
+use super::derived::MAX_INPUT_BYTES;
+use super::image::{checker, checker_bytes, read_image_within};
 use super::ply::PlyFile;
 use super::{GltfFile, ObjFile, derived, file_name};
 
-/// Model files by their absolute paths.
+/// Model files by their absolute paths, and what is left for images.
 #[derive(Debug, Default)]
 pub(crate) struct Models {
     objs: HashMap<PathBuf, ObjFile>,
     gltfs: HashMap<PathBuf, GltfFile>,
+    budget: ImageBudget,
     /// What the files had to say.
     pub(crate) report: LoadReport,
 }
 
 impl Models {
+    /// None read yet, and so much left for images.
+    #[cfg(test)]
+    pub(crate) fn with_budget(budget: ImageBudget) -> Self {
+        Self { budget, ..Self::default() }
+    }
+
     /// All triangles of an .obj or .ply file; what ends otherwise is taken for an .obj.
     pub(crate) fn whole(&mut self, path: &Path) -> Result<MeshAsset, SceneError> {
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ply")) {
@@ -64,29 +73,45 @@ impl Models {
         Ok(asset)
     }
 
-    /// An image by its source.
+    /// An image by its source, if all images that were asked for so far fit together.
     pub(crate) fn image(&mut self, source: ImageSource) -> Result<ImageAsset, SceneError> {
-        let (asset, warning) = match &source {
-            ImageSource::File(path) => {
-                let name = file_name(path);
-                read_image(path)?.into_asset(source, &name)
-            }
-            ImageSource::Masked { color, mask } => {
-                let colors = color.as_deref().map(read_image).transpose()?;
-                let made = derived::masked(colors, read_image(mask)?);
-                let name = file_name(mask);
-                made.map_err(|reason| SceneError::unusable(mask, reason))?.into_asset(source, &name)
-            }
-            ImageSource::Bumps(path) => {
-                let made = derived::normals(read_image(path)?);
-                let name = file_name(path);
-                made.map_err(|reason| SceneError::unusable(path, reason))?.into_asset(source, &name)
-            }
-            ImageSource::ModelImage(path, number) => self.gltf(path)?.image_asset(*number)?,
-            ImageSource::Checker { squares, a, b } => checker(*squares, *a, *b).into_asset(source, "checker"),
-        };
+        let path = match &source {
+            ImageSource::File(path) | ImageSource::Bumps(path) | ImageSource::ModelImage(path, _) => path,
+            ImageSource::Masked { mask, .. } => mask,
+            ImageSource::Checker { .. } => Path::new("checkerboard"),
+        }
+        .to_owned();
+        let (asset, warning) = self.made(source, &path)?;
+        let left = self.budget.after(asset.pixels.bytes());
+        self.budget = left.map_err(|reason| SceneError::unusable(&path, reason))?;
         self.report.warnings.extend(warning);
         Ok(asset)
+    }
+
+    /// Makes an image; `path` is what messages call it.
+    fn made(&mut self, source: ImageSource, path: &Path) -> Result<(ImageAsset, Option<String>), SceneError> {
+        let unusable = |reason: String| SceneError::unusable(path, reason);
+        let left = self.budget.left();
+        let decoded = match &source {
+            ImageSource::File(path) => read_image_within(path, left)?,
+            ImageSource::Masked { color, mask } => {
+                let mask = read_image_within(mask, left.min(MAX_INPUT_BYTES))?;
+                // Both are in memory at once.
+                let left = left.saturating_sub(mask.bytes()).min(MAX_INPUT_BYTES);
+                let colors = color.as_deref().map(|color| read_image_within(color, left)).transpose()?;
+                derived::masked(colors, mask).map_err(unusable)?
+            }
+            ImageSource::Bumps(path) => {
+                let heights = read_image_within(path, left.min(MAX_INPUT_BYTES))?;
+                derived::normals(heights).map_err(unusable)?
+            }
+            ImageSource::ModelImage(path, number) => return self.gltf(path)?.image_asset(*number, left),
+            ImageSource::Checker { squares, a, b } => {
+                self.budget.after(checker_bytes(*squares)).map_err(unusable)?;
+                checker(*squares, *a, *b)
+            }
+        };
+        Ok(decoded.into_asset(source, &file_name(path)))
     }
 
     fn obj(&mut self, path: &Path) -> Result<&ObjFile, SceneError> {

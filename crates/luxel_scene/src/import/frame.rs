@@ -117,6 +117,7 @@ pub(crate) fn load_obj_scene(
         .ok_or_else(|| SceneError::unusable(typed, "has no triangle"))?;
     bounds.check(typed)?;
     let mut report = LoadReport {
+        scenes: Vec::new(),
         used: file.used(),
         dropped: file.dropped_line(path).into_iter().collect(),
         ignored: file.ignored,
@@ -175,6 +176,7 @@ pub(crate) fn load_vox_scene(
     let file = VoxFile::read(path).map_err(|error| error.renamed(typed))?;
     let bounds = Bounds { min: DVec3::ZERO, max: file.grid.size.as_dvec3() };
     let report = LoadReport {
+        scenes: Vec::new(),
         used: file.used(),
         dropped: file.dropped_line(path).into_iter().collect(),
         ignored: file.ignored,

@@ -8,6 +8,7 @@ use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, Imag
 use crate::assets::{ImageAsset, ImagePixels, ImageSource};
 use crate::error::SceneError;
 
+use super::budget::one_too_many;
 use super::guard::guarded;
 use super::read_model;
 
@@ -16,10 +17,6 @@ const MAX_EDGE: u32 = 16384;
 
 /// The most bytes that an image may fill: 512 MiB, 16384 x 8192 pixels of a texture.
 pub(crate) const MAX_IMAGE_BYTES: u64 = 512 << 20;
-
-/// The most bytes that the images of a model may fill together: 768 MiB. Bake holds them and a pyramid of each at a time,
-/// and a graphics driver one more; all that must stay well below 4 GiB.
-pub(super) const MAX_MODEL_IMAGE_BYTES: u64 = 768 << 20;
 
 /// The most memory that decoding may need: twice as much, for files of 16 bits per channel.
 const MAX_DECODER_BYTES: u64 = 2 * MAX_IMAGE_BYTES;
@@ -37,10 +34,7 @@ pub(crate) struct Decoded {
 impl Decoded {
     /// Bytes that the pixels fill.
     pub(crate) fn bytes(&self) -> u64 {
-        match &self.pixels {
-            ImagePixels::Rgba8(pixels) => 4 * pixels.len() as u64,
-            ImagePixels::RgbF32(pixels) => 12 * pixels.len() as u64,
-        }
+        self.pixels.bytes()
     }
 
     /// The asset, and a line about mended pixels if there are any.
@@ -103,8 +97,7 @@ fn check_size(decoder: &impl ImageDecoder, limit: u64) -> Result<(), String> {
         return Err(too_large());
     }
     if bytes > limit {
-        let (needs, left) = (bytes.div_ceil(1 << 20), limit >> 20);
-        return Err(format!("is one too many: it needs {needs} MiB, and {left} MiB are left for it"));
+        return Err(one_too_many(bytes, limit));
     }
     Ok(())
 }
@@ -166,9 +159,16 @@ fn radiance(image: DynamicImage) -> Decoded {
     Decoded { width, height, pixels: ImagePixels::RgbF32(pixels), mended }
 }
 
-/// The image of a checkerboard recipe: 16 pixels along the edge of a square.
+/// Pixels along the edge of a square of a checkerboard.
+const SQUARE: u32 = 16;
+
+/// Bytes that the image of a checkerboard recipe fills.
+pub(super) fn checker_bytes(squares: u32) -> u64 {
+    4 * u64::from(squares * SQUARE).pow(2)
+}
+
+/// The image of a checkerboard recipe.
 pub(crate) fn checker(squares: u32, a: [u8; 3], b: [u8; 3]) -> Decoded {
-    const SQUARE: u32 = 16;
     let edge = squares * SQUARE;
     let opaque = |[r, g, b]: [u8; 3]| [r, g, b, 255];
     let pixels = (0..edge * edge)

@@ -6,6 +6,7 @@
 //! counted, and what cannot be understood is an error that names the place.
 
 mod assemble;
+mod budget;
 mod cache;
 mod confined;
 mod derived;
@@ -33,6 +34,8 @@ use std::path::{Path, PathBuf};
 
 use crate::error::SceneError;
 
+#[cfg(test)]
+pub(crate) use budget::ImageBudget;
 pub(crate) use cache::Models;
 pub(crate) use frame::{load_obj_scene, load_ply_scene, load_vox_scene};
 pub(crate) use gltf::{GltfFile, load_gltf_scene};

@@ -7,9 +7,10 @@ use crate::assets::{AssetId, Assets, ImagePixels, ImageSource};
 use crate::report::LoadReport;
 use crate::textures::{MaterialTextures, TextureRef};
 
+use super::budget::ImageBudget;
 use super::confined::confined;
 use super::derived::MAX_INPUT_BYTES;
-use super::image::{Decoded, MAX_IMAGE_BYTES, MAX_MODEL_IMAGE_BYTES, read_image_within};
+use super::image::{Decoded, MAX_IMAGE_BYTES, read_image_within};
 use super::mtl_look::{Map, Role};
 use super::{counted, derived, file_name, one_line};
 
@@ -17,7 +18,7 @@ use super::{counted, derived, file_name, one_line};
 #[derive(Debug)]
 pub(super) struct ObjImages<'a> {
     model: &'a Path,
-    left: u64,
+    budget: ImageBudget,
     /// By what was asked for and by what came of it; `None` where nothing did.
     made: HashMap<ImageSource, Option<Image>>,
     /// Names of files that were complained about.
@@ -41,7 +42,7 @@ impl<'a> ObjImages<'a> {
     pub(super) fn new(model: &'a Path) -> Self {
         Self {
             model,
-            left: MAX_MODEL_IMAGE_BYTES,
+            budget: ImageBudget::default(),
             made: HashMap::new(),
             told: HashSet::new(),
             unusable: HashSet::new(),
@@ -131,7 +132,7 @@ impl<'a> ObjImages<'a> {
     ) -> Option<Image> {
         let opacity = self.picture(map, &mask, MAX_INPUT_BYTES)?;
         // Both are in memory at once.
-        let left = self.left.saturating_sub(opacity.bytes()).min(MAX_INPUT_BYTES);
+        let left = self.budget.left().saturating_sub(opacity.bytes()).min(MAX_INPUT_BYTES);
         let colors = color.and_then(|(map, path)| Some((self.picture(map, path, left)?, path.clone())));
         let (colors, color) = colors.unzip();
         let picture = self.or_tell(map, derived::masked(colors, opacity));
@@ -164,7 +165,7 @@ impl<'a> ObjImages<'a> {
 
     /// The picture in a file, if it fills at most `limit` bytes and fits into what is left for all.
     fn picture(&mut self, map: &Map, path: &Path, limit: u64) -> Option<Decoded> {
-        let attempt = (path.to_owned(), limit.min(self.left));
+        let attempt = (path.to_owned(), limit.min(self.budget.left()));
         if self.unusable.contains(&attempt) {
             return None;
         }
@@ -184,8 +185,8 @@ impl<'a> ObjImages<'a> {
         assets: &mut Assets,
     ) -> Option<Image> {
         let image = picture.and_then(|picture| {
-            let left = self.left.checked_sub(picture.bytes()).ok_or_else(|| "is one too many".to_owned());
-            self.left = self.or_tell(map, left)?;
+            let left = self.budget.after(picture.bytes());
+            self.budget = self.or_tell(map, left)?;
             let is_colored = is_colored(&picture);
             let (asset, warning) = picture.into_asset(source.clone(), &map.file);
             self.warnings.extend(warning);

@@ -80,6 +80,7 @@ impl PlyFile {
         let normals = self.mended_normals;
         let warning = format!("{name}: {normals} normals are none and were made from the faces around");
         LoadReport {
+            scenes: Vec::new(),
             used: [counted(mesh.triangles.len(), "triangle")].into_iter().chain(carried).collect(),
             ignored: self.ignored.clone(),
             dropped: (count > 0).then_some(dropped).into_iter().collect(),

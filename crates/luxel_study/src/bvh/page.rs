@@ -61,10 +61,6 @@ fn method(runs: &Runs<'_>) -> Markup {
              heuristic, a node and a triangle test costing 1 each."
         }
         (judgement(runs, REPEATS))
-        p {
-            "Where the frames of two runs scatter more than that, it is their own scatter that counts: speeds whose middle \
-             halves of frames (from a quarter to three quarters) overlap cannot be told apart."
-        }
         @if runs.iter().any(|run| run.quick) {
             p {
                 strong { "Shortened (--quick): " }

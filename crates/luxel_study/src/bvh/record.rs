@@ -105,28 +105,10 @@ record! {
         /// Samples per pixel of the picture; 0 without one.
         #[serde(default)]
         pub picture_spp: u32,
-        /// Seconds to build the BVHs of all meshes, without anything else.
-        pub build_secs: f64,
         /// Cost of the largest mesh's BVH by the heuristic, a node and a triangle test costing 1 each.
         pub sah_cost: f64,
-        /// Bytes of nodes and triangles.
-        pub bytes: u64,
-        /// Nodes of the BVHs of meshes.
-        pub nodes: u32,
-        /// Deepest level of the largest mesh's BVH.
-        pub depth: u32,
-        /// Nodes of BVHs over triangles that a ray tests.
-        pub nodes_per_ray: f64,
         /// Nodes of the BVH over objects that a ray tests.
         pub tlas_nodes_per_ray: f64,
-        /// Triangles that a ray tests.
-        pub tests_per_ray: f64,
-        /// Bounces off Lambert surfaces per frame.
-        pub lambert_bounces: f64,
-        /// Bounces off metals per frame.
-        pub metal_bounces: f64,
-        /// Reflections and refractions at glass per frame.
-        pub dielectric_bounces: f64,
         /// Bounces off semi-specular surfaces per frame.
         pub semi_specular_bounces: f64,
         /// Rays to lights per frame.
@@ -152,16 +134,14 @@ impl Record for Run {
         label(structure)
     }
 
+    fn count(&self) -> u32 {
+        self.triangles
+    }
+
     fn numbers(&self) -> Vec<(&'static str, f64, Allowed)> {
         vec![
-            ("build_secs", self.build_secs, Allowed::NotNegative),
             ("sah_cost", self.sah_cost, Allowed::NotNegative),
-            ("nodes_per_ray", self.nodes_per_ray, Allowed::NotNegative),
             ("tlas_nodes_per_ray", self.tlas_nodes_per_ray, Allowed::NotNegative),
-            ("tests_per_ray", self.tests_per_ray, Allowed::NotNegative),
-            ("lambert_bounces", self.lambert_bounces, Allowed::NotNegative),
-            ("metal_bounces", self.metal_bounces, Allowed::NotNegative),
-            ("dielectric_bounces", self.dielectric_bounces, Allowed::NotNegative),
             ("semi_specular_bounces", self.semi_specular_bounces, Allowed::NotNegative),
             ("shadow_rays", self.shadow_rays, Allowed::NotNegative),
             ("dark", self.dark.unwrap_or_default(), Allowed::Share),
@@ -204,17 +184,8 @@ pub(crate) fn example() -> Run {
         view: "scene".to_owned(),
         triangles: 69_620,
         picture_spp: 0,
-        build_secs: 0.025,
         sah_cost: 31.5,
-        bytes: 4_000_000,
-        nodes: 50_000,
-        depth: 22,
-        nodes_per_ray: 30.0,
         tlas_nodes_per_ray: 3.0,
-        tests_per_ray: 5.0,
-        lambert_bounces: 3000.0,
-        metal_bounces: 0.0,
-        dielectric_bounces: 0.0,
         semi_specular_bounces: 0.0,
         shadow_rays: 3000.0,
         lost_pixels: None,

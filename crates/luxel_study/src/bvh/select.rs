@@ -1,7 +1,7 @@
 //! Questions that figures ask of the records, and the names that records have.
 use super::record::{Run, Sweep};
 use crate::kit::select::backend_name;
-use crate::kit::verdict::{AtCount, Case, Noise};
+use crate::kit::verdict::Case;
 
 /// Every triangle is tested.
 pub(crate) const NAIVE: &str = "naive";
@@ -40,10 +40,6 @@ impl<'a> Runs<'a> {
         self.filter(|run| run.sweep == sweep)
     }
 
-    pub(crate) fn at(&self, triangles: u32) -> Self {
-        self.filter(|run| run.triangles == triangles)
-    }
-
     pub(crate) fn seen_from(&self, view: &str) -> Self {
         self.filter(|run| run.view == view)
     }
@@ -54,24 +50,6 @@ impl<'a> Runs<'a> {
 
     pub(crate) fn variant(&self, variant: &str) -> Option<&'a Run> {
         self.iter().find(|run| run.variant == variant)
-    }
-
-    /// Numbers of triangles, rising.
-    pub(crate) fn counts(&self) -> Vec<u32> {
-        self.values(|run| run.triangles)
-    }
-
-    /// How many times faster one way is than another, by the number of triangles.
-    pub(crate) fn ratios(&self, fast: &str, slow: &str) -> Vec<AtCount> {
-        let (fast, slow) = (self.with(fast), self.with(slow));
-        let ratio = |count: u32| Some((count, fast.at(count).fps()? / slow.at(count).fps()?));
-        self.counts().into_iter().filter_map(ratio).collect()
-    }
-
-    /// How far the ratio of two ways at a number of triangles may be off.
-    pub(crate) fn noise_between(&self, a: &str, b: &str, triangles: u32) -> Noise {
-        let at = self.at(triangles);
-        self.noise_of(&[at.with(a), at.with(b)])
     }
 
     /// Each backend's runs with its name.

@@ -1,6 +1,4 @@
 //! What the BVH study takes from a configuration, and its record.
-use std::time::Instant;
-
 use bevy_ecs::prelude::World;
 use luxel_engine::{Counter, FrameSettings, FrameStage, MeshTreeFacts, SphereCloud};
 
@@ -11,14 +9,13 @@ use super::record::{OwnFields, Run, Sweep};
 use super::scene::{self, Scene};
 use super::staging;
 use crate::StudyError;
-use crate::kit::measured::{Look, Measured, rounded};
+use crate::kit::measured::{Look, Measured, median_build, rounded};
 use crate::kit::picture::png;
 use crate::kit::plan::SEED;
-use crate::kit::record::Shape;
+use crate::kit::record::{Built, Shape};
 use crate::kit::study::{Made, Study};
 
-/// Builds are repeated up to this many times, and no longer than this.
-const MOST_BUILDS: usize = 5;
+/// Builds are repeated no longer than this.
 const BUILD_SECS: f64 = 0.1;
 
 /// Seed document 2's results and discussion.
@@ -79,7 +76,7 @@ impl Study for BvhStudy {
 
     fn baked(stage: &mut FrameStage, secs: f64, measured: &mut Measured<Facts>) -> Result<(), StudyError> {
         measured.facts.trees = stage.mesh_trees();
-        measured.facts.build_secs = build_secs(stage, secs)?;
+        measured.facts.build_secs = median_build(secs.min(BUILD_SECS), || stage.mesh_build_secs())?;
         measured.facts.hardware_gpu = stage.is_hardware_gpu();
         Ok(())
     }
@@ -133,23 +130,22 @@ impl Study for BvhStudy {
             view: staging.view.name().to_owned(),
             triangles: u32::try_from(facts.trees.triangles).unwrap_or(u32::MAX),
             picture_spp: *shown_spp,
-            build_secs: rounded(facts.build_secs),
             sah_cost: rounded(facts.trees.sah_cost),
-            bytes: facts.trees.bytes,
-            nodes: u32::try_from(facts.trees.nodes).unwrap_or(u32::MAX),
-            depth: facts.trees.depth,
-            nodes_per_ray: measured.per_ray(Counter::BvhNodes),
             tlas_nodes_per_ray: measured.per_ray(Counter::TlasNodes),
-            tests_per_ray: measured.per_ray(Counter::TriangleTests),
-            lambert_bounces: measured.per_frame(Counter::LambertBounces),
-            metal_bounces: measured.per_frame(Counter::MetalBounces),
-            dielectric_bounces: measured.per_frame(Counter::DielectricBounces),
             semi_specular_bounces: measured.per_frame(Counter::SemiSpecularBounces),
             shadow_rays: measured.per_frame(Counter::ShadowRays),
             lost_pixels: facts.lost_pixels,
             dark: facts.dark.map(rounded),
         };
-        Run::of(made, shape, measured.timing(), facts.look.as_ref(), own)
+        let built = Built {
+            build_secs: facts.build_secs,
+            bytes: facts.trees.bytes,
+            nodes: u32::try_from(facts.trees.nodes).unwrap_or(u32::MAX),
+            depth: facts.trees.depth,
+            nodes_per_ray: measured.per_ray(Counter::BvhNodes),
+            tests_per_ray: measured.per_ray(Counter::TriangleTests),
+        };
+        Run::of(made, shape, built, measured.timing(), facts.look.as_ref(), own)
     }
 
     fn page(runs: &[Run]) -> Result<String, StudyError> {
@@ -161,16 +157,4 @@ impl Study for BvhStudy {
 fn differing(a: &[[u32; 2]], b: &[[u32; 2]]) -> u32 {
     let common = a.iter().zip(b).filter(|(a, b)| a != b).count();
     (common + a.len().abs_diff(b.len())) as u32
-}
-
-/// The median of some builds, for a single short one tells little.
-fn build_secs(stage: &FrameStage, secs: f64) -> Result<f64, StudyError> {
-    let start = Instant::now();
-    let mut builds = Vec::new();
-    while builds.len() < MOST_BUILDS
-        && (builds.is_empty() || start.elapsed().as_secs_f64() < secs.min(BUILD_SECS))
-    {
-        builds.push(stage.mesh_build_secs()?);
-    }
-    Ok(crate::kit::stats::median(&builds).unwrap_or_default())
 }

@@ -6,7 +6,8 @@ macro_rules! doors {
         /// What a study left.
         pub type Studied = $crate::kit::Studied<Run>;
 
-        /// Measures a plan and writes runs, table and page to a folder, which is made if it is missing.
+        /// Measures a plan and writes runs, table and page to a folder, which is made if it is missing, and goes again
+        /// if there was no run.
         ///
         /// # Errors
         /// When the folder cannot be written, holds files of something else or is being written to, or when no backend

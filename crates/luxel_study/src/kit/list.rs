@@ -94,6 +94,12 @@ fn check_numbers<R: Record>(run: &R) -> Result<(), String> {
         ("rays", common.rays, Allowed::NotNegative),
         ("rays_per_sec", common.rays_per_sec, Allowed::NotNegative),
         ("noise", common.noise.unwrap_or_default(), Allowed::NotNegative),
+        ("build_secs", common.build_secs, Allowed::NotNegative),
+        ("nodes_per_ray", common.nodes_per_ray, Allowed::NotNegative),
+        ("tests_per_ray", common.tests_per_ray, Allowed::NotNegative),
+        ("lambert_bounces", common.lambert_bounces, Allowed::NotNegative),
+        ("metal_bounces", common.metal_bounces, Allowed::NotNegative),
+        ("dielectric_bounces", common.dielectric_bounces, Allowed::NotNegative),
     ];
     let frames = common.frames_ms.iter().map(|ms| ("frames_ms", *ms, Allowed::Positive));
     for (field, number, allowed) in shared.into_iter().chain(run.numbers()).chain(frames) {

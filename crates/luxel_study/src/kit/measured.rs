@@ -1,7 +1,12 @@
 //! From frames to the numbers of a record.
+use std::time::Instant;
+
 use luxel_engine::{Counter, Counters, Frame};
 
 use super::stats::{median, quantile, without_outliers};
+
+/// Builds are repeated up to this many times.
+const MOST_BUILDS: usize = 5;
 
 /// What was measured of a configuration; `facts` are its study's own.
 #[derive(Default)]
@@ -28,6 +33,9 @@ pub(crate) struct Timing {
     pub(crate) fps: f64,
     pub(crate) rays: f64,
     pub(crate) rays_per_sec: f64,
+    pub(crate) lambert_bounces: f64,
+    pub(crate) metal_bounces: f64,
+    pub(crate) dielectric_bounces: f64,
     pub(crate) frames_ms: Vec<f64>,
 }
 
@@ -51,6 +59,9 @@ impl<F> Measured<F> {
             fps: rounded(1e3 / frame_ms),
             rays: rounded(rays),
             rays_per_sec: rounded(rays * 1e3 / frame_ms),
+            lambert_bounces: self.per_frame(Counter::LambertBounces),
+            metal_bounces: self.per_frame(Counter::MetalBounces),
+            dielectric_bounces: self.per_frame(Counter::DielectricBounces),
             frames_ms: self.frame_ms.iter().copied().map(rounded).collect(),
         }
     }
@@ -68,6 +79,19 @@ impl<F> Measured<F> {
     fn counted(&self) -> f64 {
         self.frame_ms.len().max(1) as f64
     }
+}
+
+/// The median time of up to five builds that together take no longer than `secs`, for a single short one tells little.
+///
+/// # Errors
+/// That of a build.
+pub(crate) fn median_build<E>(secs: f64, mut build: impl FnMut() -> Result<f64, E>) -> Result<f64, E> {
+    let start = Instant::now();
+    let mut builds = vec![build()?];
+    while builds.len() < MOST_BUILDS && start.elapsed().as_secs_f64() < secs {
+        builds.push(build()?);
+    }
+    Ok(median(&builds).unwrap_or_default())
 }
 
 /// Seven significant digits: no measurement has more, and such numbers come back the same from any file.

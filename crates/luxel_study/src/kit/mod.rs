@@ -21,6 +21,8 @@ pub(crate) mod select;
 pub(crate) mod stats;
 mod store;
 pub(crate) mod study;
+#[cfg(test)]
+pub(crate) mod tests;
 pub(crate) mod text;
 pub(crate) mod verdict;
 
@@ -46,7 +48,8 @@ pub struct Studied<R> {
     pub files: Vec<PathBuf>,
 }
 
-/// Measures a plan and writes runs, table and page to a folder, which is made if it is missing.
+/// Measures a plan and writes runs, table and page to a folder, which is made if it is missing, and goes again if there
+/// was no run.
 ///
 /// # Errors
 /// When the folder cannot be written, holds files of something else or is being written to, or when no backend of the

@@ -112,16 +112,23 @@ pub(crate) fn turns<R: Record>(runs: &Runs<'_, R>) -> Markup {
 
 /// What the noise is, and how claims are judged; `repeats` says what is measured more than once.
 pub(crate) fn judgement<R: Record>(runs: &Runs<'_, R>, repeats: &str) -> Markup {
+    let is_known = runs.backends().into_iter().any(|backend| runs.on(backend).knows_noise());
     let noise = |backend| {
         let on = runs.on(backend);
-        let taken = if on.knows_noise() { "" } else { " (taken over: nothing was measured twice there)" };
+        let taken = match (on.knows_noise(), is_known) {
+            (true, _) => "",
+            (false, true) => " (taken over: nothing was measured twice there)",
+            (false, false) => " (assumed: nothing was measured twice)",
+        };
         format!("{} on the {}{taken}", percent(on.noise().0), backend_name(backend))
     };
     html! {
         p {
             "Noise: " (repeats) " " (percent(NOISE_QUANTILE)) " of such pairs of one sweep differ by less than the noise, which is taken \
              as 5 % at least: " (list(runs.backends().into_iter().map(noise))) ". Speeds that differ by less cannot \
-             be told apart. Sweeps are made one after the other and the machine may change between them; speeds of \
+             be told apart. Where the frames of two runs scatter more than that, it is their own scatter that counts: \
+             speeds whose middle halves of frames (from a quarter to three quarters) overlap cannot be told apart \
+             either. Sweeps are made one after the other and the machine may change between them; speeds of \
              different sweeps are not compared."
         }
         p {

@@ -26,7 +26,10 @@ pub(crate) trait Record: Shared + Clone + PartialEq + Serialize + DeserializeOwn
     /// A structure in a legend.
     fn label(structure: &str) -> String;
 
-    /// Numbers beside the common ones, by the names of their fields, and whether they are shares of a whole.
+    /// Number of things in the scene: spheres or triangles.
+    fn count(&self) -> u32;
+
+    /// Numbers beside the common ones, by the names of their fields, and which are allowed.
     fn numbers(&self) -> Vec<(&'static str, f64, Allowed)>;
 
     /// Checks what else there is to be checked.
@@ -67,6 +70,12 @@ pub(crate) struct Common<'a> {
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) spp: u32,
+    pub(crate) build_secs: f64,
+    pub(crate) nodes_per_ray: f64,
+    pub(crate) tests_per_ray: f64,
+    pub(crate) lambert_bounces: f64,
+    pub(crate) metal_bounces: f64,
+    pub(crate) dielectric_bounces: f64,
     pub(crate) frames: u32,
     pub(crate) outliers: u32,
     pub(crate) frame_ms: f64,
@@ -86,6 +95,16 @@ pub(crate) struct Shape {
     pub(crate) size: (u32, u32),
     pub(crate) spp: u32,
     pub(crate) bounces: u32,
+}
+
+/// What was built for a configuration, and what rays did in it.
+pub(crate) struct Built {
+    pub(crate) build_secs: f64,
+    pub(crate) bytes: u64,
+    pub(crate) nodes: u32,
+    pub(crate) depth: u32,
+    pub(crate) nodes_per_ray: f64,
+    pub(crate) tests_per_ray: f64,
 }
 
 /// Declares the record `$run` of a study: `$own`, which is what its own fields are taken as, between those that all have.
@@ -133,6 +152,24 @@ macro_rules! record {
             pub spp: u32,
             /// How often light may scatter after the first hit.
             pub bounces: u32,
+            /// Seconds to build the structure, without anything else.
+            pub build_secs: f64,
+            /// Bytes of the structure with what stands in its leaves.
+            pub bytes: u64,
+            /// Nodes of the structure.
+            pub nodes: u32,
+            /// Deepest level of the structure.
+            pub depth: u32,
+            /// Nodes of the structure that a ray visits.
+            pub nodes_per_ray: f64,
+            /// Primitives that a ray tests.
+            pub tests_per_ray: f64,
+            /// Bounces off Lambert surfaces per frame.
+            pub lambert_bounces: f64,
+            /// Bounces off metals per frame.
+            pub metal_bounces: f64,
+            /// Reflections and refractions at glass per frame.
+            pub dielectric_bounces: f64,
             $($(#[$field_about])* pub $field: $kind,)*
             /// Measured frames that count.
             pub frames: u32,
@@ -171,6 +208,7 @@ macro_rules! record {
             pub(super) fn of<S>(
                 made: &$crate::kit::study::Made<'_, S>,
                 shape: $crate::kit::record::Shape,
+                built: $crate::kit::record::Built,
                 timing: $crate::kit::measured::Timing,
                 look: Option<&$crate::kit::measured::Look>,
                 own: $own,
@@ -197,6 +235,15 @@ macro_rules! record {
                     height: shape.size.1,
                     spp: shape.spp,
                     bounces: shape.bounces,
+                    build_secs: $crate::kit::measured::rounded(built.build_secs),
+                    bytes: built.bytes,
+                    nodes: built.nodes,
+                    depth: built.depth,
+                    nodes_per_ray: built.nodes_per_ray,
+                    tests_per_ray: built.tests_per_ray,
+                    lambert_bounces: timing.lambert_bounces,
+                    metal_bounces: timing.metal_bounces,
+                    dielectric_bounces: timing.dielectric_bounces,
                     $($field: own.$field,)*
                     frames: timing.frames,
                     outliers: timing.outliers,
@@ -210,6 +257,12 @@ macro_rules! record {
                     frames_ms: timing.frames_ms,
                     picture_png: look.map(|look| look.png.clone()),
                 }
+            }
+
+            /// With frames, for tests, of which a quarter, half and three quarters are faster than these, milliseconds.
+            #[cfg(test)]
+            pub(crate) fn with_frames(self, [frame_ms_p25, frame_ms, frame_ms_p75]: [f64; 3]) -> Self {
+                Self { fps: 1e3 / frame_ms, frame_ms_p25, frame_ms, frame_ms_p75, ..self }
             }
 
             /// A record for tests, of a sweep.
@@ -234,6 +287,15 @@ macro_rules! record {
                     height: 48,
                     spp: 4,
                     bounces: 4,
+                    build_secs: 0.001,
+                    bytes: 4096,
+                    nodes: 17,
+                    depth: 3,
+                    nodes_per_ray: 20.0,
+                    tests_per_ray: 5.0,
+                    lambert_bounces: 10.0,
+                    metal_bounces: 10.0,
+                    dielectric_bounces: 10.0,
                     $($field: own.$field,)*
                     frames: 50,
                     outliers: 1,
@@ -267,6 +329,12 @@ macro_rules! record {
                     width: self.width,
                     height: self.height,
                     spp: self.spp,
+                    build_secs: self.build_secs,
+                    nodes_per_ray: self.nodes_per_ray,
+                    tests_per_ray: self.tests_per_ray,
+                    lambert_bounces: self.lambert_bounces,
+                    metal_bounces: self.metal_bounces,
+                    dielectric_bounces: self.dielectric_bounces,
                     frames: self.frames,
                     outliers: self.outliers,
                     frame_ms: self.frame_ms,

@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::record::Record;
 use super::stats::{geometric_mean, quantile};
-use super::verdict::Noise;
+use super::verdict::{AtCount, Noise};
 
 /// Part of the repeats whose difference is taken for noise.
 pub(crate) const NOISE_QUANTILE: f64 = 0.9;
@@ -57,13 +57,25 @@ impl<'a, R: Record> Runs<'a, R> {
         Noise(self.noise().0.max(scatter - 1.0))
     }
 
-    /// The most by which the median frame of a run differs from one of the middle half of its frames, as a ratio.
+    /// How many times faster these runs are than others, and how far that may be off; `None` where there is none.
+    pub(crate) fn against(&self, others: &Self) -> Option<(f64, Noise)> {
+        Some((self.fps()? / others.fps()?, self.noise_of([self, others])))
+    }
+
+    /// How far a ratio of the speeds of two structures may be off, or a ratio of such ratios at some counts.
+    pub(crate) fn noise_between(&self, a: &str, b: &str, counts: &[u32]) -> Noise {
+        let at = |count: &u32| [a, b].map(|structure| self.at(*count).with(structure));
+        self.noise_of(&counts.iter().flat_map(at).collect::<Vec<_>>())
+    }
+
+    /// By how much the median frame of a run differs at most from one of the middle half of its frames, as a ratio,
+    /// averaged over the runs as their speeds are.
     fn scatter(&self) -> f64 {
         let of = |run: &R| {
             let run = run.common();
             (run.frame_ms / run.frame_ms_p25).max(run.frame_ms_p75 / run.frame_ms)
         };
-        self.iter().map(of).fold(1.0, f64::max)
+        geometric_mean(&self.iter().map(of).collect::<Vec<_>>()).unwrap_or(1.0)
     }
 
     /// True if the noise of the backends of these runs was measured.
@@ -84,6 +96,10 @@ impl<'a, R: Record> Runs<'a, R> {
         self.filter(|run| run.common().structure == structure)
     }
 
+    pub(crate) fn at(&self, count: u32) -> Self {
+        self.filter(|run| run.count() == count)
+    }
+
     pub(crate) fn iter(&self) -> impl Iterator<Item = &'a R> + '_ {
         self.runs.iter().copied()
     }
@@ -99,6 +115,18 @@ impl<'a, R: Record> Runs<'a, R> {
     /// Different values of a field, in their order.
     pub(crate) fn values<T: Ord>(&self, field: impl Fn(&'a R) -> T) -> Vec<T> {
         self.iter().map(field).collect::<BTreeSet<T>>().into_iter().collect()
+    }
+
+    /// Numbers of things, rising.
+    pub(crate) fn counts(&self) -> Vec<u32> {
+        self.values(R::count)
+    }
+
+    /// How many times faster one structure is than another, by the number of things.
+    pub(crate) fn ratios(&self, fast: &str, slow: &str) -> Vec<AtCount> {
+        let (fast, slow) = (self.with(fast), self.with(slow));
+        let ratio = |count: u32| Some((count, fast.at(count).fps()? / slow.at(count).fps()?));
+        self.counts().into_iter().filter_map(ratio).collect()
     }
 
     /// Backends, the CPU first.

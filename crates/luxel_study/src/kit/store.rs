@@ -30,6 +30,8 @@ const BEGIN_BYTES: u64 = 4000;
 /// A folder that a study is being written to.
 pub(super) struct Folder<S: Study> {
     path: PathBuf,
+    /// What of its path was missing, the innermost first.
+    made: Vec<PathBuf>,
     study: PhantomData<S>,
 }
 
@@ -37,7 +39,9 @@ impl<S: Study> Folder<S> {
     /// Makes the folder if it is missing, and finds out whether files can be made in it and whether those that are
     /// there may be replaced.
     pub(super) fn open(path: &Path) -> Result<Self, StudyError> {
-        let folder = Self { path: path.to_owned(), study: PhantomData };
+        let missing = path.ancestors().filter(|place| !place.as_os_str().is_empty() && !place.exists());
+        let made = missing.map(Path::to_owned).collect();
+        let folder = Self { path: path.to_owned(), made, study: PhantomData };
         if let Some(file) = path.ancestors().find(|place| place.is_file()) {
             return Err(StudyError::NotAFolder(file.to_owned()));
         }
@@ -164,10 +168,16 @@ impl<S: Study> RunsFile<'_, S> {
         self.file.write_all(line.as_bytes()).map_err(|source| self.folder.error(PART, source))
     }
 
-    /// Removes it: nothing was measured.
+    /// Removes it, and the folder if it was made for it: nothing was measured.
     pub(super) fn discard(self) -> Result<(), StudyError> {
-        let path = self.folder.path.join(PART);
-        fs::remove_file(path).map_err(|source| self.folder.error(PART, source))
+        let Self { folder, file } = self;
+        fs::remove_file(folder.path.join(PART)).map_err(|source| folder.error(PART, source))?;
+        drop(file);
+        for made in &folder.made {
+            // What somebody has put something into in the meantime stays.
+            _ = fs::remove_dir(made);
+        }
+        Ok(())
     }
 
     /// Writes page and table, and gives all three their names.
@@ -246,6 +256,20 @@ mod tests {
         first.discard().unwrap();
         assert!(names(folder.path()).is_empty());
         store.begin_runs().unwrap().discard().unwrap();
+        assert!(folder.path().exists(), "a folder that was there before stays");
+    }
+
+    #[test]
+    fn a_study_without_a_run_leaves_no_folder_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let open = || Folder::<OctreeStudy>::open(&folder.path().join("new/out")).unwrap();
+        open().begin_runs().unwrap().discard().unwrap();
+        assert!(names(folder.path()).is_empty());
+        let store = open();
+        let file = store.begin_runs().unwrap();
+        fs::write(folder.path().join("new/notes"), "").unwrap();
+        file.discard().unwrap();
+        assert_eq!(names(&folder.path().join("new")), ["notes"]);
     }
 
     #[test]

@@ -184,22 +184,17 @@ pub(crate) fn crossover_text(noise: impl Fn(u32) -> Noise, ratios: &[AtCount], t
     }
 }
 
-/// Whether a quantity grows along its pairs: its end is above its start, and it never falls.
-pub(crate) fn growth(noise: Noise, pairs: &[AtCount]) -> Vec<Case> {
-    let (Some((_, first)), Some((_, last))) = (pairs.first(), pairs.last()) else { return Vec::new() };
-    if pairs.len() < 2 {
-        return Vec::new();
-    }
-    let falls = pairs.windows(2).any(|pair| noise.order(pair[1].1 / pair[0].1) == Order::Slower);
-    let mut cases = vec![noise.faster(last / first)];
+/// Whether a quantity grows along its pairs: its end is above its start, and it never falls, by the noise between two
+/// counts.
+pub(crate) fn growth(noise: impl Fn(u32, u32) -> Noise, pairs: &[AtCount]) -> Vec<Case> {
+    let [first, .., last] = pairs else { return Vec::new() };
+    let grown = |early: &AtCount, late: &AtCount| (noise(early.0, late.0), late.1 / early.1);
+    let is_fall = |(noise, ratio): (Noise, f64)| noise.order(ratio) == Order::Slower;
+    let falls = pairs.windows(2).any(|pair| is_fall(grown(&pair[0], &pair[1])));
+    let (noise, ratio) = grown(first, last);
+    let mut cases = vec![noise.faster(ratio)];
     cases.extend(falls.then_some(Case::No));
     cases
-}
-
-/// How far values lie apart: the largest over the smallest; `None` for none.
-pub(crate) fn spread(values: &[f64]) -> Option<f64> {
-    let least = values.iter().copied().reduce(f64::min)?;
-    Some(values.iter().copied().fold(least, f64::max) / least)
 }
 
 /// Ratios as `1.2× to 3×`.
@@ -275,17 +270,16 @@ mod tests {
 
     #[test]
     fn growth_forgives_noise_only() {
-        assert_eq!(growth(NOISE, &[(1, 1.0), (2, 0.97), (3, 2.0)]), [Case::Yes]);
-        assert_eq!(growth(NOISE, &[(1, 1.0), (2, 0.8), (3, 2.0)]), [Case::Yes, Case::No]);
-        assert_eq!(growth(NOISE, &[(1, 1.0), (2, 1.01)]), [Case::Open]);
-        assert_eq!(growth(NOISE, &[(1, 2.0), (2, 1.0)]), [Case::No, Case::No]);
-        assert!(growth(NOISE, &[(1, 1.0)]).is_empty());
+        assert_eq!(growth(|_, _| NOISE, &[(1, 1.0), (2, 0.97), (3, 2.0)]), [Case::Yes]);
+        assert_eq!(growth(|_, _| NOISE, &[(1, 1.0), (2, 0.8), (3, 2.0)]), [Case::Yes, Case::No]);
+        assert_eq!(growth(|_, _| NOISE, &[(1, 1.0), (2, 1.01)]), [Case::Open]);
+        assert_eq!(growth(|_, _| NOISE, &[(1, 2.0), (2, 1.0)]), [Case::No, Case::No]);
+        assert!(growth(|_, _| NOISE, &[(1, 1.0)]).is_empty());
     }
 
     #[test]
     fn many_ratios_are_a_range() {
         assert_eq!(ratios_text(&[(10, 1.5), (2000, 3.0)]), "1.5× at 10 and 3× at 2,000");
         assert_eq!(ratios_text(&[(1, 1.5), (2, 3.0), (3, 0.5), (4, 1.0)]), "0.5× to 3×");
-        assert_eq!((spread(&[2.0, 1.0, 4.0]), spread(&[])), (Some(4.0), None));
     }
 }

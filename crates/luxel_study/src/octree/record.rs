@@ -49,26 +49,8 @@ record! {
         pub min_spheres: u32,
         /// Name of the quality.
         pub quality: String,
-        /// Seconds to build the structure alone.
-        pub build_secs: f64,
-        /// Bytes of spheres, nodes and leaves.
-        pub bytes: u64,
-        /// Nodes; 1 without a structure.
-        pub nodes: u32,
-        /// Deepest level that was built.
-        pub depth: u32,
         /// True if the structure stopped growing because its memory was used up.
         pub cut_off: bool,
-        /// Nodes visited per ray.
-        pub nodes_per_ray: f64,
-        /// Spheres tested per ray.
-        pub tests_per_ray: f64,
-        /// Bounces off Lambert surfaces, metals and dielectrics per frame.
-        pub lambert_bounces: f64,
-        /// See `lambert_bounces`.
-        pub metal_bounces: f64,
-        /// See `lambert_bounces`.
-        pub dielectric_bounces: f64,
         /// Share of the pixels whose first hit is another than without a structure; where it was compared.
         #[serde(default)]
         pub wrong_pixels: Option<f64>,
@@ -92,14 +74,12 @@ impl Record for Run {
         label(structure)
     }
 
+    fn count(&self) -> u32 {
+        self.spheres
+    }
+
     fn numbers(&self) -> Vec<(&'static str, f64, Allowed)> {
         vec![
-            ("build_secs", self.build_secs, Allowed::NotNegative),
-            ("nodes_per_ray", self.nodes_per_ray, Allowed::NotNegative),
-            ("tests_per_ray", self.tests_per_ray, Allowed::NotNegative),
-            ("lambert_bounces", self.lambert_bounces, Allowed::NotNegative),
-            ("metal_bounces", self.metal_bounces, Allowed::NotNegative),
-            ("dielectric_bounces", self.dielectric_bounces, Allowed::NotNegative),
             ("wrong_pixels", self.wrong_pixels.unwrap_or_default(), Allowed::Share),
             ("wrong_rays", self.wrong_rays.unwrap_or_default(), Allowed::Share),
         ]
@@ -135,16 +115,7 @@ pub(crate) fn example() -> Run {
         max_depth: 20,
         min_spheres: 8,
         quality: "low".to_owned(),
-        build_secs: 0.001,
-        bytes: 4096,
-        nodes: 17,
-        depth: 3,
         cut_off: false,
-        nodes_per_ray: 20.0,
-        tests_per_ray: 5.0,
-        lambert_bounces: 10.0,
-        metal_bounces: 10.0,
-        dielectric_bounces: 10.0,
         wrong_pixels: None,
         wrong_rays: None,
     };

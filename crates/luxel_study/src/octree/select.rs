@@ -2,7 +2,6 @@
 use super::record::{Run, Sweep};
 pub(crate) use crate::kit::select::backend_name;
 use crate::kit::stats::geometric_mean;
-use crate::kit::verdict::AtCount;
 
 /// The structure that the report ends with: first leaf with a hit, eight orders.
 pub(crate) const REPORTS: &str = "octree-seed";
@@ -61,15 +60,6 @@ impl<'a> Runs<'a> {
         self.filter(|run| run.sweep == sweep)
     }
 
-    pub(crate) fn at(&self, spheres: u32) -> Self {
-        self.filter(|run| run.spheres == spheres)
-    }
-
-    /// Numbers of spheres, rising.
-    pub(crate) fn counts(&self) -> Vec<u32> {
-        self.values(|run| run.spheres)
-    }
-
     /// Qualities, the lowest first.
     pub(crate) fn qualities(&self) -> Vec<(u32, &'a str)> {
         self.values(|run| (run.spp, run.quality.as_str()))
@@ -79,13 +69,6 @@ impl<'a> Runs<'a> {
     pub(crate) fn speed(&self, limit: Limit) -> Option<f64> {
         let most = if limit == Limit::On { FPS_LIMIT } else { f64::MAX };
         geometric_mean(&self.iter().map(|run| run.fps.min(most)).collect::<Vec<_>>())
-    }
-
-    /// How many times faster one structure is than another, by the number of spheres.
-    pub(crate) fn ratios(&self, fast: &str, slow: &str) -> Vec<AtCount> {
-        let (fast, slow) = (self.with(fast), self.with(slow));
-        let ratio = |count: u32| Some((count, fast.at(count).fps()? / slow.at(count).fps()?));
-        self.counts().into_iter().filter_map(ratio).collect()
     }
 }
 

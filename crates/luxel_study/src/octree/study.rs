@@ -1,6 +1,4 @@
 //! What the octree study takes from a configuration, and its record.
-use std::time::Instant;
-
 use bevy_ecs::prelude::World;
 use luxel_engine::{Counter, FrameSettings, FrameStage, MeshStructure, SphereAccel, SphereFacts};
 
@@ -9,10 +7,10 @@ use super::page::{TITLE, page};
 use super::plan::{Configuration, Group};
 use super::record::{OwnFields, Run, Sweep};
 use crate::StudyError;
-use crate::kit::measured::{Look, Measured, rounded};
+use crate::kit::measured::{Look, Measured, median_build, rounded};
 use crate::kit::picture::png;
 use crate::kit::plan::SEED;
-use crate::kit::record::Shape;
+use crate::kit::record::{Built, Shape};
 use crate::kit::study::{Made, Study};
 
 /// Up to this many spheres, first hits are compared with those of no structure at all, beyond with those of our
@@ -20,8 +18,7 @@ use crate::kit::study::{Made, Study};
 const NAIVE_MOST: u32 = 2000;
 /// Rays from anywhere that are compared.
 const WRONG_RAYS: u32 = 20_000;
-/// Builds are repeated up to this many times, and no longer than this.
-const MOST_BUILDS: usize = 5;
+/// Builds are repeated no longer than this.
 const BUILD_SECS: f64 = 0.02;
 
 /// Seed document 1's assessment.
@@ -72,7 +69,7 @@ impl Study for OctreeStudy {
 
     fn baked(stage: &mut FrameStage, secs: f64, measured: &mut Measured<Facts>) -> Result<(), StudyError> {
         measured.facts.structure = stage.structure();
-        measured.facts.build_secs = build_secs(stage, secs)?;
+        measured.facts.build_secs = median_build(secs.min(BUILD_SECS), || stage.build_secs())?;
         Ok(())
     }
 
@@ -113,20 +110,19 @@ impl Study for OctreeStudy {
             max_depth: configuration.cloud().max_depth,
             min_spheres,
             quality: row.name.to_owned(),
-            build_secs: rounded(facts.build_secs),
-            bytes: facts.structure.bytes,
-            nodes: facts.structure.nodes,
-            depth: facts.structure.depth,
             cut_off: facts.structure.cut_off,
-            nodes_per_ray: measured.per_ray(Counter::SphereNodes),
-            tests_per_ray: measured.per_ray(Counter::SphereTests),
-            lambert_bounces: measured.per_frame(Counter::LambertBounces),
-            metal_bounces: measured.per_frame(Counter::MetalBounces),
-            dielectric_bounces: measured.per_frame(Counter::DielectricBounces),
             wrong_pixels: facts.wrong_pixels.map(rounded),
             wrong_rays: facts.wrong_rays.map(rounded),
         };
-        Run::of(made, shape, measured.timing(), facts.look.as_ref(), own)
+        let built = Built {
+            build_secs: facts.build_secs,
+            bytes: facts.structure.bytes,
+            nodes: facts.structure.nodes,
+            depth: facts.structure.depth,
+            nodes_per_ray: measured.per_ray(Counter::SphereNodes),
+            tests_per_ray: measured.per_ray(Counter::SphereTests),
+        };
+        Run::of(made, shape, built, measured.timing(), facts.look.as_ref(), own)
     }
 
     fn page(runs: &[Run]) -> Result<String, StudyError> {
@@ -161,16 +157,4 @@ fn seen(
 fn differing(a: &[u32], b: &[u32]) -> f64 {
     let count = a.iter().zip(b).filter(|(a, b)| a != b).count();
     count as f64 / a.len().max(1) as f64
-}
-
-/// The median of some builds, for a single short one tells little.
-fn build_secs(stage: &FrameStage, secs: f64) -> Result<f64, StudyError> {
-    let start = Instant::now();
-    let mut builds = Vec::new();
-    while builds.len() < MOST_BUILDS
-        && (builds.is_empty() || start.elapsed().as_secs_f64() < secs.min(BUILD_SECS))
-    {
-        builds.push(stage.build_secs()?);
-    }
-    Ok(crate::kit::stats::median(&builds).unwrap_or_default())
 }

@@ -28,7 +28,8 @@ fn findings(on: &Runs<'_>, mixed: &Runs<'_>) -> Vec<(&'static str, String)> {
         ("Crossover: our octree becomes faster than naive", OURS),
         ("Crossover: the report's octree becomes faster than naive", REPORTS),
     ] {
-        found.push((name, crossover_text(|_| small.noise(), &small.ratios(structure, NAIVE), "spheres")));
+        let noise = |count: u32| small.noise_between(structure, NAIVE, &[count]);
+        found.push((name, crossover_text(noise, &small.ratios(structure, NAIVE), "spheres")));
     }
     let advantage = small.ratios(OURS, NAIVE);
     if let Some((spheres, ratio)) = advantage.last() {

@@ -1,5 +1,6 @@
 //! Reflectances of the principled model: Fresnel's equations for the dielectric, tinted as `KHR_materials_specular`
 //! says, and Schlick's approximation for the metal, as glTF 2.0 says.
+use luxel_geom::albedo::lookup;
 use luxel_geom::optics::{self, Fresnel};
 use luxel_geom::{Real, Vector, schlick};
 
@@ -7,17 +8,19 @@ use super::super::Bsdf;
 
 /// The dielectric's reflectance.
 ///
-/// The extension mixes the tinted reflectance head-on with 1 by Schlick's weight. Here the exact reflectance is in the
-/// place of Schlick's: the tint shifts it by (tinted − untinted head-on) · (1 − weight). That is exact where there is no
-/// tint, what the extension says where the index is infinite, and linear, so that a lobe's mean follows from means.
+/// The extension mixes the tinted reflectance head-on with 1 by Schlick's weight. Here the exact reflectance F is in the
+/// place of Schlick's, and the tint mixes it with what the extension says for its ends: a tint below 1 with Schlick's
+/// weight alone (no reflection head-on), a larger one with 1 (all is reflected). That is exact where there is no tint,
+/// what the extension says head-on and under level light, between 0 and 1, and linear, so that a lobe's mean follows from
+/// means.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Dielectric<R: Real> {
     /// Index on the far side over that on the near side.
     pub(super) eta: R,
-    /// Reflectance head-on, over that without tint; as much as makes it 1 at most.
-    pub(super) tint: R::Vec3,
-    /// What the tint adds head-on.
-    shift: R::Vec3,
+    /// Share of the exact reflectance.
+    pub(super) exact: R::Vec3,
+    /// Share of Schlick's weight; what is left of 1 is that of 1.
+    rim: R::Vec3,
     /// Factor on all of it.
     strength: R,
 }
@@ -35,10 +38,13 @@ pub(super) struct Means<R: Real> {
 
 impl<R: Real> Dielectric<R> {
     pub(super) fn new(bsdf: &Bsdf<R>, eta: R) -> Self {
-        let f0 = schlick::eta_to_f0(eta);
-        let head_on = (bsdf.specular_color * f0).min(R::Vec3::splat(R::ONE));
-        let tint = bsdf.specular_color.map(|tint| if tint * f0 > R::ONE { R::ONE / f0 } else { tint });
-        Self { eta, tint, shift: head_on - R::Vec3::splat(f0), strength: bsdf.specular }
+        let (f0, passing) = (schlick::eta_to_f0(eta), lookup::head_on_transmittance(eta));
+        let exact = bsdf.specular_color.map(|tint| {
+            let is_stronger = tint > R::ONE && passing > R::ZERO;
+            if is_stronger { ((R::ONE - tint * f0) / passing).max(R::ZERO) } else { tint.min(R::ONE) }
+        });
+        let rim = bsdf.specular_color.map(|tint| (R::ONE - tint).max(R::ZERO));
+        Self { eta, exact, rim, strength: bsdf.specular }
     }
 
     /// Reflectance under an angle. Where nothing can pass everything is reflected, whatever the strength.
@@ -58,8 +64,8 @@ impl<R: Real> Dielectric<R> {
 
     /// The mean of [`Self::reflectance`] over a lobe.
     pub(super) fn mean(&self, means: Means<R>) -> R::Vec3 {
-        let shifted = self.shift * (means.one - means.rim) + R::Vec3::splat(means.exact);
-        (shifted * self.strength).map(|c| c.clamped(R::ZERO, R::ONE))
+        let one = R::Vec3::splat(R::ONE) - self.exact - self.rim;
+        (self.exact * means.exact + self.rim * means.rim + one * means.one) * self.strength
     }
 }
 

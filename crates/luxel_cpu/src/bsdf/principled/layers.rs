@@ -132,8 +132,8 @@ impl<'a, R: Real> Layers<'a, R> {
                 self.dielectric.smooth_means(cos, optics::fresnel_dielectric(cos, eta));
             Means { one, exact: exact * one, rim: rim * one }
         } else {
-            let rim = lookup::rim_albedo(self.tables, cos, roughness);
-            Means { one, exact: lookup::coat_albedo(self.tables, cos, roughness, eta), rim }
+            let exact = lookup::mean_reflectance(self.tables, cos, roughness, eta) * one;
+            Means { one, exact, rim: lookup::rim_albedo(self.tables, cos, roughness) }
         };
         self.dielectric.mean(means)
     }
@@ -160,7 +160,9 @@ impl<'a, R: Real> Layers<'a, R> {
         if self.is_coat_smooth {
             return optics::fresnel_dielectric(cos, index).reflectance;
         }
-        lookup::coat_albedo(self.tables, cos, self.bsdf.clearcoat_roughness, index)
+        let roughness = self.bsdf.clearcoat_roughness;
+        let kept = R::ONE - lookup::conductor_loss(self.tables, cos, roughness);
+        kept * lookup::mean_reflectance(self.tables, cos, roughness, index)
     }
 
     /// What the layers above the diffuse base let through under a cosine.
@@ -180,11 +182,9 @@ impl<'a, R: Real> Layers<'a, R> {
         let roughness = if self.is_smooth { R::ZERO } else { self.bsdf.roughness };
         let loss =
             if self.is_smooth { R::ZERO } else { lookup::conductor_loss_average(self.tables, roughness) };
-        let means = Means {
-            one: R::ONE - loss,
-            exact: lookup::coat_albedo_average(self.tables, roughness, self.dielectric.eta),
-            rim: lookup::rim_albedo_average(self.tables, roughness),
-        };
+        let one = R::ONE - loss;
+        let exact = one - lookup::coat_passing_average(self.tables, roughness, self.dielectric.eta);
+        let means = Means { one, exact, rim: lookup::rim_albedo_average(self.tables, roughness) };
         R::Vec3::splat(R::ONE) - self.dielectric.mean(means)
     }
 
@@ -221,7 +221,7 @@ impl<'a, R: Real> Layers<'a, R> {
         let from_thinner = if is_denser_here { R::ONE / eta } else { eta };
         let means = Means {
             one: R::ONE,
-            exact: lookup::coat_albedo_average(self.tables, R::ZERO, from_thinner),
+            exact: R::ONE - lookup::coat_passing_average(self.tables, R::ZERO, from_thinner),
             rim: lookup::rim_albedo_average(self.tables, R::ZERO),
         };
         // η and 1/η have one reflectance head-on, so the means on both sides are tinted alike.
@@ -239,10 +239,9 @@ impl<'a, R: Real> Layers<'a, R> {
         let balance = if largest > R::ZERO { returns.far / largest } else { R::ZERO };
         let spread = if is_denser_here { eta * eta } else { R::ONE };
         returns.through = returns.through * (balance * spread);
-        // No more comes back than a weaker or tinted reflection lets out; one that is stronger than the table's loses
-        // less at refractions.
-        let tint = self.dielectric.tint.map(|tint| if tint > R::ONE { R::ONE / tint } else { tint });
-        returns.given_back = tint * (self.bsdf.specular * self.clear);
+        // The loss is linear in the reflectance, and the table has that of its exact share; what the rest loses, of a weak
+        // or tinted reflection, stays lost.
+        returns.given_back = self.dielectric.exact * (self.bsdf.specular * self.clear);
     }
 }
 

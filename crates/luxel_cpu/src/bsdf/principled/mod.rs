@@ -91,28 +91,32 @@ impl<'a, R: Real> Principled<'a, R> {
         } else {
             microfacet::sample_visible_normal::<R>(self.wo, layers.alpha, u[0], u[1])
         };
-        let share = self.mirrored_share(self.wo.dot(h));
-        if inner >= share {
+        let [mirrored, passing] = self.facet_chances(self.wo.dot(h));
+        if inner >= mirrored {
             counters[Counter::TransmissionBounces] += 1;
-            return self.sample_transmission(h, share);
+            return self.sample_transmission(h, passing);
         }
         let wi = optics::reflect::<R>(self.wo, h);
         if layers.is_smooth {
-            let chance = self.chances.facets * share;
+            let chance = self.chances.facets * mirrored;
             let weight = layers.reflectance(self.wo.z()) * ((R::ONE - self.here.coat) / chance);
             return Some(Scattered::Mirrored(wi, weight));
         }
         (wi.z() > R::ZERO).then_some(Scattered::Spread(wi))
     }
 
-    /// Probability that light which meets a microfacet under an angle is mirrored.
-    fn mirrored_share(&self, cos: R) -> R {
+    /// Probabilities that light which meets a microfacet under an angle is mirrored, and that it passes. Under level light
+    /// one of them is small: it is not 1 less the other, which would have none of its digits.
+    fn facet_chances(&self, cos: R) -> [R; 2] {
         if self.layers.clear == R::ZERO {
-            return R::ONE;
+            return [R::ONE, R::ZERO];
         }
         let (mirrored, passing) =
             (mean::<R>(self.layers.reflectance(cos)), mean::<R>(self.layers.transmittance(cos)));
-        if passing == R::ZERO { R::ONE } else { mirrored / (mirrored + passing) }
+        if passing == R::ZERO {
+            return [R::ONE, R::ZERO];
+        }
+        [mirrored, passing].map(|share| share / (mirrored + passing))
     }
 }
 

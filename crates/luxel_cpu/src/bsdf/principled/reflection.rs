@@ -30,10 +30,10 @@ impl<R: Real> Principled<'_, R> {
         }
         let (alpha, cos) = (self.layers.alpha, self.wo.dot(h));
         let lobe = microfacet::distribution::<R>(h, alpha) * microfacet::visibility::<R>(self.wo, wi, alpha);
-        let chance = self.chances.facets * self.mirrored_share(cos);
+        let [mirrored, _] = self.facet_chances(cos);
         BsdfValue {
             f_cos: self.layers.reflectance(cos) * (lobe * wi.z()),
-            pdf: chance * microfacet::reflection_pdf::<R>(self.wo, h, alpha),
+            pdf: self.chances.facets * mirrored * microfacet::reflection_pdf::<R>(self.wo, h, alpha),
         }
     }
 

@@ -17,8 +17,8 @@ impl<R: Real> Principled<'_, R> {
         self.layers.dielectric.eta * self.layers.dielectric.eta
     }
 
-    /// Lets light pass at a microfacet; `share` of what meets it is mirrored instead.
-    pub(super) fn sample_transmission(&self, h: R::Vec3, share: R) -> Option<Scattered<R>> {
+    /// Lets light pass at a microfacet, with the probability `passing` of what meets it.
+    pub(super) fn sample_transmission(&self, h: R::Vec3, passing: R) -> Option<Scattered<R>> {
         let layers = &self.layers;
         let wi = if layers.is_thin {
             let mirrored = optics::reflect::<R>(self.wo, h);
@@ -34,7 +34,7 @@ impl<R: Real> Principled<'_, R> {
         if !layers.is_smooth {
             return Some(Scattered::Spread(wi));
         }
-        let chance = self.chances.facets * (R::ONE - share) * self.eta_scale(wi);
+        let chance = self.chances.facets * passing * self.eta_scale(wi);
         let weight = layers.transmittance(self.wo.z()) * (self.through_coat(wi) / chance);
         Some(Scattered::Mirrored(wi, weight))
     }
@@ -76,10 +76,10 @@ impl<R: Real> Principled<'_, R> {
         let h = microfacet::reflection_normal::<R>(self.wo, wi);
         let cos = self.wo.dot(h);
         let lobe = microfacet::distribution::<R>(h, alpha) * microfacet::visibility::<R>(self.wo, wi, alpha);
-        let chance = self.chances.facets * (R::ONE - self.mirrored_share(cos));
+        let [_, passing] = self.facet_chances(cos);
         BsdfValue {
             f_cos: self.layers.transmittance(cos) * (lobe * wi.z()),
-            pdf: chance * microfacet::reflection_pdf::<R>(self.wo, h, alpha),
+            pdf: self.chances.facets * passing * microfacet::reflection_pdf::<R>(self.wo, h, alpha),
         }
     }
 
@@ -94,10 +94,10 @@ impl<R: Real> Principled<'_, R> {
         let per_direction = microfacet::refraction_jacobian::<R>(self.wo, wi, h, eta);
         let normals = microfacet::visible_normal_pdf::<R>(self.wo, h, alpha);
         let seen = normals * microfacet::shadowing::<R>(self.wo, wi, alpha);
-        let chance = self.chances.facets * (R::ONE - self.mirrored_share(cos));
+        let [_, passing] = self.facet_chances(cos);
         BsdfValue {
             f_cos: self.layers.transmittance(cos) * (seen * per_direction),
-            pdf: chance * normals * per_direction,
+            pdf: self.chances.facets * passing * normals * per_direction,
         }
     }
 }

@@ -139,20 +139,15 @@ fn tell_ignored(from: &GltfMaterial, others: &Others, ignored: &mut Ignored) {
             ignored.add("thickness textures (bodies have a thickness of their own)", "");
         }
     }
-    if others.clearcoat.as_ref().is_some_and(|clearcoat| clearcoat.clearcoat_normal_texture.is_some()) {
-        ignored.add("normal textures of clear coats", "");
-    }
-    if others.clearcoat.as_ref().is_some_and(|clearcoat| clearcoat.clearcoat_factor > 0.0) {
-        if from.normal_texture.is_some() {
+    if let Some(clearcoat) = others.clearcoat.as_ref().filter(|clearcoat| clearcoat.clearcoat_factor > 0.0) {
+        if clearcoat.clearcoat_normal_texture.is_some() {
+            ignored.add("normal textures of clear coats", "");
+        } else if from.normal_texture.is_some() {
             ignored.add("flatness of clear coats over normal maps (the coat is bent too)", "");
         }
         if emission(from).max_element() > 0.0 {
             ignored.add("dimming of emission by clear coats", "");
         }
-    }
-    let specular = extensions(from).and_then(|extensions| extensions.specular.as_ref());
-    if specular.is_some_and(|specular| specular.specular_color_factor.0.iter().any(|&factor| factor > 1.0)) {
-        ignored.add("what specular colours are above 1", "");
     }
     if others.glossiness.as_ref().is_some_and(|it| it.specular_glossiness_texture.is_some()) {
         ignored.add("specular-glossiness textures", "");
@@ -178,7 +173,7 @@ fn principled(from: &GltfMaterial, others: &Others) -> Principled {
         ior: extensions.and_then(|extensions| extensions.ior.as_ref()).map_or(1.5, |ior| index(ior.ior.0)),
         specular: specular.map_or(1.0, |specular| share(specular.specular_factor.0)),
         specular_color: specular
-            .map_or(Vec3::ONE, |specular| reflectance(Vec3::from_array(specular.specular_color_factor.0))),
+            .map_or(Vec3::ONE, |specular| not_negative(Vec3::from_array(specular.specular_color_factor.0))),
         transmission: transmission.map_or(0.0, |transmission| share(transmission.transmission_factor.0)),
         volume: volume(from),
         clearcoat: clearcoat.map_or(0.0, |clearcoat| share(clearcoat.clearcoat_factor)),
@@ -206,8 +201,7 @@ fn volume(from: &GltfMaterial) -> Option<Volume> {
 fn emission(from: &GltfMaterial) -> Vec3 {
     let strength = extensions(from).and_then(|extensions| extensions.emissive_strength.as_ref());
     let strength = strength.map_or(1.0, |strength| strength.emissive_strength.0);
-    let emission = Vec3::from_array(from.emissive_factor.0) * strength;
-    if emission.is_finite() { emission.max(Vec3::ZERO) } else { Vec3::ZERO }
+    not_negative(Vec3::from_array(from.emissive_factor.0) * strength)
 }
 
 fn opacity(from: &GltfMaterial, alpha: f32) -> Opacity {
@@ -271,6 +265,11 @@ fn index(value: f32) -> f32 {
 /// Held in [0, 1]; what is no number becomes 0.
 fn share(value: f32) -> f32 {
     if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) }
+}
+
+/// What is negative becomes 0, and black what is not finite.
+fn not_negative(color: Vec3) -> Vec3 {
+    if color.is_finite() { color.max(Vec3::ZERO) } else { Vec3::ZERO }
 }
 
 fn reflectance(color: Vec3) -> Vec3 {

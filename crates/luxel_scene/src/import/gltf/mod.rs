@@ -79,15 +79,18 @@ impl GltfFile {
         Ok(self.asset(mesh, primitive, shape.mesh, shape.dropped))
     }
 
-    /// One image.
+    /// One image of at most `limit` bytes.
     ///
     /// # Errors
-    /// There is none, or it cannot be decoded.
-    pub(crate) fn image_asset(&self, number: u32) -> Result<(ImageAsset, Option<String>), SceneError> {
+    /// There is none, it cannot be decoded, or it is larger.
+    pub(crate) fn image_asset(
+        &self,
+        number: u32,
+        limit: u64,
+    ) -> Result<(ImageAsset, Option<String>), SceneError> {
         guarded(&self.path, || {
-            let decoded = textures::decode_image(&self.path, &self.root, &self.buffers, number, u64::MAX);
-            let (image, _, warning) = decoded.map_err(|reason| SceneError::unusable(&self.path, reason))?;
-            Ok((image, warning))
+            let decoded = textures::decode_image(&self.path, &self.root, &self.buffers, number, limit);
+            decoded.map_err(|reason| SceneError::unusable(&self.path, reason))
         })
     }
 

@@ -22,7 +22,7 @@ use super::extensions::{Ignored, known_used};
 use super::lights::{Light, camera, light};
 use super::materials::{Look, default_material, look};
 use super::nodes::{Placed, place};
-use super::scenes::roots;
+use super::scenes::choose;
 use super::textures::Images;
 use super::{GltfFile, counted};
 
@@ -71,8 +71,8 @@ struct Model {
 impl Model {
     fn read(mut file: GltfFile, options: &LoadOptions) -> Result<Self, SceneError> {
         let mut ignored = Ignored::default();
-        let (roots, said) = roots(&file, options)?;
-        let placed = place(&file.root, &file.buffers, &roots, &mut ignored)
+        let scene = choose(&file, options)?;
+        let placed = place(&file.root, &file.buffers, &scene.roots, &mut ignored)
             .map_err(|reason| SceneError::unusable(&file.path, reason))?;
         let node = |placed: &Placed| file.root.nodes.get(placed.node);
         let meshes: Vec<_> = placed.iter().map(|it| node(it)?.mesh.map(|mesh| mesh.value())).collect();
@@ -89,9 +89,9 @@ impl Model {
             assets: Assets::default(),
             bounds: None,
             has_lights: false,
-            report: LoadReport::default(),
+            report: LoadReport { scenes: scene.all, ..LoadReport::default() },
         };
-        model.read_meshes(&mut file, &mut ignored, said)?;
+        model.read_meshes(&mut file, &mut ignored, scene.called)?;
         model.has_lights = model.lights.iter().any(Option::is_some) || model.shines();
         model.bounds = model.measure();
         Ok(model)

@@ -5,32 +5,60 @@ use gltf::json::scene::{Node, Scene};
 
 use crate::error::SceneError;
 use crate::options::LoadOptions;
+use crate::report::SceneEntry;
 
 use super::super::one_line;
 use super::GltfFile;
 
-/// The roots of the scene that is asked for, or else the default one, or else the first; and what to call it.
-pub(super) fn roots(
-    file: &GltfFile,
-    options: &LoadOptions,
-) -> Result<(Vec<Index<Node>>, String), SceneError> {
+/// The most scenes that an error names.
+const MOST_NAMES: usize = 16;
+
+/// The scene that is shown.
+pub(super) struct Chosen {
+    pub(super) roots: Vec<Index<Node>>,
+    /// What to call it.
+    pub(super) called: String,
+    /// Every scene of the file.
+    pub(super) all: Vec<SceneEntry>,
+}
+
+/// The scene that is asked for, or else the default one, or else the first, or else the nodes of no scene.
+pub(super) fn choose(file: &GltfFile, options: &LoadOptions) -> Result<Chosen, SceneError> {
     let scenes = &file.root.scenes;
-    let found = match &options.scene {
-        Some(wanted) => Some(named(scenes, wanted).ok_or_else(|| {
-            let known: Vec<_> = (0..).zip(scenes).map(|(index, scene)| called(index, scene)).collect();
-            let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-            let message = format!("has no scene \"{}\"; it has {known}", one_line(wanted));
-            SceneError::unusable(&file.path, message)
-        })?),
-        None => file.root.scene.map(|scene| scene.value()).or((!scenes.is_empty()).then_some(0)),
+    let default = file.root.scene.map(|scene| scene.value()).or((!scenes.is_empty()).then_some(0));
+    let shown = match &options.scene {
+        Some(wanted) => Some(named(scenes, wanted).ok_or_else(|| none_of(file, wanted))?),
+        None => default,
     };
-    let Some(index) = found else {
-        return Ok((parentless(&file.root.nodes), "the nodes of no scene".to_owned()));
+    let Some(index) = shown else {
+        let roots = parentless(&file.root.nodes);
+        return Ok(Chosen { roots, called: "the nodes of no scene".to_owned(), all: Vec::new() });
     };
     let Some(scene) = scenes.get(index) else {
         return Err(SceneError::unusable(&file.path, format!("its default scene, {index}, does not exist")));
     };
-    Ok((scene.nodes.clone(), format!("{} of {}", called(index, scene), scenes.len())))
+    let entry = |(at, scene): (usize, &Scene)| SceneEntry {
+        name: scene.name.clone(),
+        is_default: default == Some(at),
+        is_shown: at == index,
+    };
+    Ok(Chosen {
+        roots: scene.nodes.clone(),
+        called: format!("{} of {}", called(index, scene), scenes.len()),
+        all: scenes.iter().enumerate().map(entry).collect(),
+    })
+}
+
+fn none_of(file: &GltfFile, wanted: &str) -> SceneError {
+    let scenes = &file.root.scenes;
+    let mut known: Vec<_> =
+        (0..).zip(scenes).take(MOST_NAMES).map(|(index, scene)| called(index, scene)).collect();
+    if scenes.len() > MOST_NAMES {
+        known.push(format!("{} more", scenes.len() - MOST_NAMES));
+    }
+    let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    let message = format!("has no scene \"{}\"; it has {known}", one_line(wanted));
+    SceneError::unusable(&file.path, message)
 }
 
 fn called(index: usize, scene: &Scene) -> String {

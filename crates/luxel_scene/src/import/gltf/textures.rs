@@ -15,8 +15,9 @@ use serde_json::Value;
 use crate::assets::{AssetId, Assets, ImageAsset, ImageSource};
 use crate::textures::{Filter, TextureRef, Wrap};
 
+use super::super::budget::ImageBudget;
 use super::super::file_name;
-use super::super::image::{MAX_MODEL_IMAGE_BYTES, decode};
+use super::super::image::decode;
 use super::buffers::{Buffers, resolve, short};
 use super::extensions::Ignored;
 
@@ -26,7 +27,7 @@ pub(super) struct Images<'a> {
     path: &'a Path,
     root: &'a Root,
     buffers: &'a Buffers,
-    left: u64,
+    budget: ImageBudget,
     known: HashMap<usize, Option<AssetId>>,
     /// One line per image that cannot be used.
     pub(super) warnings: Vec<String>,
@@ -35,7 +36,8 @@ pub(super) struct Images<'a> {
 impl<'a> Images<'a> {
     /// None yet of those of the file at `path`.
     pub(super) fn new(path: &'a Path, root: &'a Root, buffers: &'a Buffers) -> Self {
-        Self { path, root, buffers, left: MAX_MODEL_IMAGE_BYTES, known: HashMap::new(), warnings: Vec::new() }
+        let budget = ImageBudget::default();
+        Self { path, root, buffers, budget, known: HashMap::new(), warnings: Vec::new() }
     }
 
     /// How many are in use.
@@ -49,9 +51,14 @@ impl<'a> Images<'a> {
         if let Some(known) = self.known.get(&number) {
             return *known;
         }
-        let id = match decode_image(self.path, self.root, self.buffers, number as u32, self.left) {
-            Ok((image, bytes, warning)) => {
-                self.left = self.left.saturating_sub(bytes);
+        let decoded = decode_image(self.path, self.root, self.buffers, number as u32, self.budget.left());
+        let fitting = decoded.and_then(|(image, warning)| {
+            let left = self.budget.after(image.pixels.bytes());
+            self.budget = left.map_err(|reason| format!("image {number} {reason}"))?;
+            Ok((image, warning))
+        });
+        let id = match fitting {
+            Ok((image, warning)) => {
                 self.warnings.extend(warning);
                 Some(assets.insert_image(image))
             }
@@ -147,8 +154,8 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
     }
 }
 
-/// An image, the bytes that it fills, and a warning about it.
-type Found = (ImageAsset, u64, Option<String>);
+/// An image, and a warning about it.
+type Found = (ImageAsset, Option<String>);
 
 /// Image `number` of the file at `path`, of at most `limit` bytes.
 ///
@@ -175,7 +182,5 @@ pub(super) fn decode_image(
     let by_name = image.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
     let by_name = by_name.and_then(|uri| ImageFormat::from_path(short(uri)).ok());
     let decoded = decode(bytes, by_name, limit).map_err(|reason| format!("{name} {reason}"))?;
-    let bytes = decoded.bytes();
-    let (asset, warning) = decoded.into_asset(ImageSource::ModelImage(path.to_owned(), number), &name);
-    Ok((asset, bytes, warning))
+    Ok(decoded.into_asset(ImageSource::ModelImage(path.to_owned(), number), &name))
 }

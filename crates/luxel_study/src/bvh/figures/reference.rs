@@ -55,7 +55,11 @@ fn minutes_text(cpu: &Run) -> String {
 fn compared(runs: &Runs<'_>, cpu: &Run, gpu: &Run) -> Verdict {
     let ratio = gpu.fps / cpu.fps;
     // A software driver is no GPU, so it says nothing about one.
-    let is_faster = if gpu.hardware_gpu { runs.noise_of([runs]).faster(ratio) } else { Case::Open };
+    let is_faster = if gpu.hardware_gpu {
+        runs.noise_of(&[runs.on("cpu"), runs.on("gpu")]).faster(ratio)
+    } else {
+        Case::Open
+    };
     let mut cases = vec![is_faster];
     let mut because =
         format!("The {} makes {} the frames of the CPU. {}", gpu.place(), times(ratio), minutes_text(cpu));

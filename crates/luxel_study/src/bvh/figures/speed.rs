@@ -39,7 +39,7 @@ fn frame_times(runs: &Runs<'_>) -> Figure {
     for (name, on) in runs.by_backend() {
         for structure in [ESCAPE, ORDERED] {
             let ratios = on.ratios(structure, NAIVE);
-            let noise = |count: u32| on.noise_between(structure, NAIVE, count);
+            let noise = |count: u32| on.noise_between(structure, NAIVE, &[count]);
             let large = ratios.iter().filter(|(count, _)| *count >= LARGE);
             cases.extend(large.map(|(count, ratio)| noise(*count).much_faster(*ratio)));
             because += &format!(
@@ -159,7 +159,7 @@ fn orders(runs: &Runs<'_>) -> Figure {
     let counts = runs.counts();
     for (name, on) in runs.by_backend() {
         let ratios = on.ratios(ESCAPE, ORDERED);
-        let noise = |count: u32| on.noise_between(ESCAPE, ORDERED, count);
+        let noise = |count: u32| on.noise_between(ESCAPE, ORDERED, &[count]);
         cases.extend(ratios.iter().map(|(count, ratio)| noise(*count).faster(*ratio)));
         reasons.push(format!("{} on the {name}", ratios_text(&ratios)));
         let at = |count: &u32| ratios.iter().find(|(c, _)| c == count).map(|(_, ratio)| *ratio);

@@ -18,12 +18,7 @@ fn answer(runs: &[Run], number: u32) -> Answer {
 
 fn run(sweep: Sweep, structure: &str, triangles: u32, fps: f64) -> Run {
     let run = Run { sweep, structure: structure.to_owned(), triangles, ..example() };
-    with_frames(run, [1e3 / fps; 3])
-}
-
-/// A run with the frames at a quarter, a half and three quarters, milliseconds.
-fn with_frames(run: Run, [frame_ms_p25, frame_ms, frame_ms_p75]: [f64; 3]) -> Run {
-    Run { fps: 1e3 / frame_ms, frame_ms_p25, frame_ms, frame_ms_p75, ..run }
+    run.with_frames([1e3 / fps; 3])
 }
 
 /// A picture of one grey.
@@ -247,7 +242,7 @@ fn frames_that_overlap_tell_nothing_however_far_apart_their_medians_are() {
     let views = |inside: [[f64; 3]; 2]| {
         let of = |view: &str, split: &str, frames| {
             let (view, split) = (view.to_owned(), split.to_owned());
-            with_frames(Run { view, split, ..run(Sweep::Views, "bvh", 70_000, 1.0) }, frames)
+            Run { view, split, ..run(Sweep::Views, "bvh", 70_000, 1.0) }.with_frames(frames)
         };
         [
             of("far", "sah", [50.0; 3]),
@@ -261,14 +256,14 @@ fn frames_that_overlap_tell_nothing_however_far_apart_their_medians_are() {
     let levels = |[two, one]: [[f64; 3]; 2]| {
         [("two", two), ("one", one)].map(|(levels, frames)| {
             let run = Run { levels: levels.to_owned(), ..run(Sweep::Levels, "bvh", 70_000, 1.0) };
-            with_frames(run, frames)
+            run.with_frames(frames)
         })
     };
     assert_eq!(answer(&levels([SLOW, FAST]), 23), Answer::Open);
     assert_eq!(answer(&levels([FAST, SLOW]), 23), Answer::Open);
     let counts = |[escape, ordered]: [[f64; 3]; 2]| {
         [("bvh-escape", escape), ("bvh", ordered)]
-            .map(|(structure, frames)| with_frames(run(Sweep::Counts, structure, 4500, 1.0), frames))
+            .map(|(structure, frames)| run(Sweep::Counts, structure, 4500, 1.0).with_frames(frames))
     };
     assert_eq!(answer(&counts([FAST, SLOW]), 18), Answer::Open);
 }

@@ -13,10 +13,10 @@ pub(super) struct Best {
 }
 
 impl Best {
-    /// Of pairs of (setting, speed), which rise in their settings.
-    pub(super) fn of(noise: Noise, spheres: u32, speeds: &[(u32, f64)]) -> Option<Self> {
-        let best = speeds.iter().map(|(_, speed)| *speed).reduce(f64::max)?;
-        let is_good = |(_, speed): &&(u32, f64)| noise.order(best / speed) == Order::Equal;
+    /// Of pairs of (setting, speed), which rise in their settings, by the noise between two settings.
+    pub(super) fn of(noise: impl Fn(u32, u32) -> Noise, spheres: u32, speeds: &[(u32, f64)]) -> Option<Self> {
+        let (best, fastest) = *speeds.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let is_good = |(at, speed): &&(u32, f64)| noise(best, *at).order(fastest / speed) == Order::Equal;
         let settings = speeds.iter().filter(is_good).map(|(setting, _)| *setting).collect();
         Some(Self { spheres, settings, measured: speeds.iter().map(|(setting, _)| *setting).collect() })
     }
@@ -88,7 +88,7 @@ mod tests {
     const NOISE: Noise = Noise(0.1);
 
     fn best(spheres: u32, speeds: &[(u32, f64)]) -> Best {
-        Best::of(NOISE, spheres, speeds).unwrap()
+        Best::of(|_, _| NOISE, spheres, speeds).unwrap()
     }
 
     #[test]
@@ -101,7 +101,7 @@ mod tests {
         let range = best(10, &[(0, 1.0), (1, 9.0), (3, 9.0), (7, 9.0)]);
         assert_eq!(best_text(&[range]), "1 to 7 at 10");
         assert_eq!(best_text(&[some, all]), "1/2 at 10 and any at 2,000");
-        assert_eq!(Best::of(NOISE, 10, &[]), None);
+        assert_eq!(Best::of(|_, _| NOISE, 10, &[]), None);
     }
 
     #[test]

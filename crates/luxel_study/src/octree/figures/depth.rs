@@ -8,7 +8,7 @@ use super::{depth_ink, fps_over_counts, over_counts, series, structure_ink};
 use crate::kit::chart::{Chart, Ink, Kind};
 use crate::kit::figure::{Figure, Part};
 use crate::kit::text::{list, times};
-use crate::kit::verdict::{AtCount, Case, Verdict, ratios_text, spread};
+use crate::kit::verdict::{AtCount, Case, Noise, Verdict, ratios_text};
 
 /// The report's best depths with its limit of frames per second: spheres, depth.
 const REPORTS_BEST: [(u32, u32); 2] = [(500, 1), (1000, 10)];
@@ -28,13 +28,25 @@ pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
 
 /// Depths with their speed.
 pub(super) fn speeds(runs: &Runs<'_>, limit: Limit) -> Vec<(u32, f64)> {
-    let at = |depth: u32| Some((depth, runs.filter(|run| run.max_depth == depth).speed(limit)?));
+    let at = |depth: u32| Some((depth, of_depth(runs, depth).speed(limit)?));
     runs.values(|run| run.max_depth).into_iter().filter_map(at).collect()
+}
+
+/// How far the ratio of the speeds of two depths may be off.
+pub(super) fn noise_of_depths(runs: &Runs<'_>, depths: [u32; 2]) -> Noise {
+    runs.noise_of(&depths.map(|depth| of_depth(runs, depth)))
+}
+
+pub(super) fn of_depth<'a>(runs: &Runs<'a>, depth: u32) -> Runs<'a> {
+    runs.filter(|run| run.max_depth == depth)
 }
 
 /// The best depths for each number of spheres.
 pub(super) fn best_by_count(runs: &Runs<'_>, limit: Limit) -> Vec<Best> {
-    let best = |count: u32| Best::of(runs.noise(), count, &speeds(&runs.at(count), limit));
+    let best = |count: u32| {
+        let runs = runs.at(count);
+        Best::of(|a, b| noise_of_depths(&runs, [a, b]), count, &speeds(&runs, limit))
+    };
     runs.counts().into_iter().filter_map(best).collect()
 }
 
@@ -51,8 +63,7 @@ fn by_depth(ones: &Runs<'_>) -> Figure {
     for Subject { name, runs } in ones.octrees() {
         let counts = runs.counts();
         let line = |depth: u32| {
-            let of_depth = runs.filter(|run| run.max_depth == depth);
-            let fps = |count| of_depth.at(count).speed(Limit::On);
+            let fps = |count| of_depth(&runs, depth).at(count).speed(Limit::On);
             series(format!("depth {depth}"), depth_ink(depth), &counts, fps)
         };
         let lines = runs.values(|run| run.max_depth).into_iter().map(line).collect();
@@ -90,9 +101,12 @@ fn by_fraction(runs: &Runs<'_>) -> Figure {
             series("depth = 2 × spheres", depth_ink(10), &counts, |count| at(count, 2 * count)),
         ];
         parts.push(fps_over_counts(format!("{name}; {}", setting(runs.first())), &counts, true, lines));
-        let different = |count: &u32| Some((*count, spread_of_trees(&runs.at(*count))?));
-        let spreads: Vec<AtCount> = counts.iter().filter_map(different).collect();
-        cases.extend(spreads.iter().map(|(_, spread)| runs.noise().alike(*spread)));
+        let different = |count: &u32| {
+            let (spread, noise) = spread_of_trees(&runs.at(*count))?;
+            Some(((*count, spread), noise.alike(spread)))
+        };
+        let (spreads, alike): (Vec<AtCount>, Vec<Case>) = counts.iter().filter_map(different).unzip();
+        cases.extend(alike);
         reasons += &match spreads.is_empty() {
             true => format!("{name}: the same tree at every number of spheres. "),
             false => {
@@ -120,12 +134,14 @@ fn by_fraction(runs: &Runs<'_>) -> Figure {
     }
 }
 
-/// How far the speeds of different trees lie apart; `None` if there is but one.
-fn spread_of_trees(runs: &Runs<'_>) -> Option<f64> {
+/// How far the speeds of different trees lie apart, and how far that may be off; `None` if there is but one.
+fn spread_of_trees(runs: &Runs<'_>) -> Option<(f64, Noise)> {
     let nodes = runs.values(|run| run.nodes);
-    let speeds: Vec<f64> =
-        nodes.iter().filter_map(|nodes| runs.filter(|run| run.nodes == *nodes).fps()).collect();
-    (speeds.len() > 1).then(|| spread(&speeds)).flatten()
+    let trees = nodes.iter().map(|nodes| runs.filter(|run| run.nodes == *nodes));
+    let mut trees: Vec<(f64, Runs<'_>)> = trees.filter_map(|tree| Some((tree.fps()?, tree))).collect();
+    trees.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [slowest, .., fastest] = &trees[..] else { return None };
+    fastest.1.against(&slowest.1)
 }
 
 fn by_quality(runs: &Runs<'_>) -> Figure {
@@ -133,7 +149,7 @@ fn by_quality(runs: &Runs<'_>) -> Figure {
     for Subject { name, runs } in runs.octrees() {
         let depths = runs.values(|run| run.max_depth);
         let qualities = runs.qualities();
-        let curves: Vec<Curve> = qualities.iter().map(|(spp, _)| Curve::of(&runs, *spp)).collect();
+        let curves: Vec<Curve<'_>> = qualities.iter().map(|(spp, _)| Curve::of(&runs, *spp)).collect();
         let lines = qualities.iter().zip(&curves).enumerate();
         let lines = lines.map(|(i, ((_, quality), curve))| {
             let ink = Ink::distinct(i);
@@ -150,14 +166,15 @@ fn by_quality(runs: &Runs<'_>) -> Figure {
             level: None,
         }));
         for ((_, quality), curve) in qualities.iter().zip(&curves) {
-            let (more, said) = curve.trend(&runs);
+            let (more, said) = curve.trend();
             cases.extend(more);
             reasons += &format!("{name}, {quality}: {said}. ");
         }
         let Some(low) = curves.first() else { continue };
-        let unlike: Vec<f64> = curves[1..].iter().filter_map(|curve| curve.unlikeness(low)).collect();
-        cases.extend(unlike.iter().map(|ratio| runs.noise().alike(*ratio)));
-        if let Some(most) = unlike.into_iter().reduce(f64::max) {
+        let unlike: Vec<(f64, Noise)> =
+            curves[1..].iter().filter_map(|curve| curve.unlikeness(low)).collect();
+        cases.extend(unlike.iter().map(|(ratio, noise)| noise.alike(*ratio)));
+        if let Some(most) = unlike.into_iter().map(|(ratio, _)| ratio).reduce(f64::max) {
             reasons += &format!("Set to 1 at depth 1, its qualities differ by {} at most. ", times(most));
         }
     }
@@ -176,43 +193,53 @@ fn by_quality(runs: &Runs<'_>) -> Figure {
 }
 
 /// Speed over depth at one quality.
-struct Curve(Vec<(u32, f64)>);
+struct Curve<'a> {
+    runs: Runs<'a>,
+    speeds: Vec<(u32, f64)>,
+}
 
-impl Curve {
-    fn of(runs: &Runs<'_>, spp: u32) -> Self {
-        Self(speeds(&runs.filter(|run: &Run| run.spp == spp), Limit::Off))
+impl<'a> Curve<'a> {
+    fn of(runs: &Runs<'a>, spp: u32) -> Self {
+        let runs = runs.filter(|run: &Run| run.spp == spp);
+        Self { speeds: speeds(&runs, Limit::Off), runs }
     }
 
     fn at(&self, depth: u32) -> Option<f64> {
-        self.0.iter().find(|(d, _)| *d == depth).map(|(_, fps)| *fps)
+        self.speeds.iter().find(|(d, _)| *d == depth).map(|(_, fps)| *fps)
     }
 
     /// Whether it has the report's trend, and how it goes in words.
-    fn trend(&self, runs: &Runs<'_>) -> (Vec<Case>, String) {
-        let divided: Vec<(u32, f64)> = self.0.iter().copied().filter(|(depth, _)| *depth > 0).collect();
-        let best = Best::of(runs.noise(), runs.first().map_or(0, |run| run.spheres), &divided);
+    fn trend(&self) -> (Vec<Case>, String) {
+        let noise = |a, b| noise_of_depths(&self.runs, [a, b]);
+        let divided: Vec<(u32, f64)> = self.speeds.iter().copied().filter(|(depth, _)| *depth > 0).collect();
+        let best = Best::of(noise, self.runs.first().map_or(0, |run| run.spheres), &divided);
         let mut cases: Vec<Case> = best.iter().filter_map(|best| best.is_at(1)).collect();
         let mut said = vec![match &best {
             Some(best) => format!("best depth {}", best_text(std::slice::from_ref(best))),
             None => "no depth measured".to_owned(),
         }];
         if let Some(falls) = self.at(FALLS_TO).zip(self.at(1)).map(|(late, early)| late / early) {
-            cases.push(runs.noise().slower(falls));
+            cases.push(noise(FALLS_TO, 1).slower(falls));
             said.push(format!("depth {FALLS_TO} is {} depth 1", times(falls)));
         }
         if let Some(stays) = self.at(STAYS_TO).zip(self.at(FALLS_TO)).map(|(late, early)| late / early) {
-            cases.push(runs.noise().alike(stays));
+            cases.push(noise(STAYS_TO, FALLS_TO).alike(stays));
             said.push(format!("depth {STAYS_TO} is {} depth {FALLS_TO}", times(stays)));
         }
         (cases, said.join(", "))
     }
 
-    /// The largest ratio between two curves that are both set to 1 at depth 1.
-    fn unlikeness(&self, other: &Self) -> Option<f64> {
+    /// The largest ratio between two curves that are both set to 1 at depth 1, and how far it may be off.
+    fn unlikeness(&self, other: &Self) -> Option<(f64, Noise)> {
         let (mine, its) = (self.at(1)?, other.at(1)?);
-        let ratio = |(depth, fps): &(u32, f64)| Some((fps / mine) / (other.at(*depth)? / its));
-        let ratios = self.0.iter().filter(|(depth, _)| *depth > 1).filter_map(ratio);
-        ratios.map(|ratio| ratio.max(1.0 / ratio)).reduce(f64::max)
+        let ratio = |(depth, fps): &(u32, f64)| {
+            let ratio = (fps / mine) / (other.at(*depth)? / its);
+            Some((ratio.max(1.0 / ratio), *depth))
+        };
+        let ratios = self.speeds.iter().filter(|(depth, _)| *depth > 1).filter_map(ratio);
+        let (most, depth) = ratios.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let compared = [self, other].map(|curve| [1, depth].map(|at| of_depth(&curve.runs, at)));
+        Some((most, self.runs.noise_of(compared.as_flattened())))
     }
 }
 

@@ -4,7 +4,7 @@ use super::super::select::{NAIVE, OURS, REPORTS, Runs, backend_name};
 use super::{ratio_table, structure_lines};
 use crate::kit::chart::{Chart, Kind};
 use crate::kit::figure::{Figure, Part};
-use crate::kit::verdict::{Case, Verdict, range_text};
+use crate::kit::verdict::{Case, Noise, Verdict, range_text};
 
 pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
     let grid = runs.of(Sweep::Grid);
@@ -41,8 +41,9 @@ fn figure(number: u32, title: &str, shows: &str, claim: &str, groups: &[(String,
         let mut rows = Vec::new();
         for structure in [OURS, REPORTS] {
             let ratios = ratios(runs, structure);
+            cases.extend(ratios.iter().flatten().map(|(ratio, noise)| noise.faster(*ratio)));
+            let ratios: Vec<Option<f64>> = ratios.into_iter().map(|known| Some(known?.0)).collect();
             let known: Vec<f64> = ratios.iter().copied().flatten().collect();
-            cases.extend(known.iter().map(|ratio| runs.noise().faster(*ratio)));
             if !known.is_empty() {
                 reasons += &format!("{structure}, {name}, against naive: {}. ", range_text(&known));
             }
@@ -60,11 +61,11 @@ fn figure(number: u32, title: &str, shows: &str, claim: &str, groups: &[(String,
     }
 }
 
-/// Speeds against naive at each height.
-fn ratios(runs: &Runs<'_>, structure: &str) -> Vec<Option<f64>> {
+/// Speeds against naive at each height, and how far they may be off.
+fn ratios(runs: &Runs<'_>, structure: &str) -> Vec<Option<(f64, Noise)>> {
     let at = |height: u32| {
         let runs = runs.filter(|run| run.height == height);
-        Some(runs.with(structure).fps()? / runs.with(NAIVE).fps()?)
+        runs.with(structure).against(&runs.with(NAIVE))
     };
     runs.values(|run| run.height).into_iter().map(at).collect()
 }

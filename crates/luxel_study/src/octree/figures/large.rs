@@ -63,9 +63,10 @@ fn crossovers(runs: &Runs<'_>) -> Figure {
     let counts = small.counts();
     let (mut lines, mut cases, mut reasons) = (Vec::new(), Vec::new(), String::new());
     for of in ratios_of(&small, &[OURS, REPORTS, "octree-base", "bvh"], NAIVE) {
-        let noise = small.on(&of.backend).noise();
+        let noise = |counts: &[u32]| of.noise(&small, NAIVE, counts);
         lines.push(of.line(&counts));
-        reasons += &format!("{}: {}. ", of.name(), crossover_text(|_| noise, &of.ratios, "spheres"));
+        reasons +=
+            &format!("{}: {}. ", of.name(), crossover_text(|count| noise(&[count]), &of.ratios, "spheres"));
         if of.structure == OURS {
             cases.extend(expectations(noise, &of.ratios));
         }
@@ -92,12 +93,13 @@ fn crossovers(runs: &Runs<'_>) -> Figure {
 }
 
 /// Wins from the expected number on, and ever more.
-fn expectations(noise: Noise, ratios: &[AtCount]) -> Vec<Case> {
+fn expectations(noise: impl Fn(&[u32]) -> Noise, ratios: &[AtCount]) -> Vec<Case> {
     let from: Vec<AtCount> =
         ratios.iter().copied().filter(|(count, _)| *count >= EXPECTED_CROSSOVER).collect();
-    let wins = crossover(|_| noise, ratios).from.is_some_and(|count| count <= EXPECTED_CROSSOVER);
+    let wins =
+        crossover(|count| noise(&[count]), ratios).from.is_some_and(|count| count <= EXPECTED_CROSSOVER);
     let mut cases = vec![Case::from(wins)];
-    cases.extend(growth(noise, &from));
+    cases.extend(growth(|a, b| noise(&[a, b]), &from));
     cases
 }
 
@@ -107,7 +109,7 @@ mod tests {
 
     #[test]
     fn winning_late_or_ever_less_is_not_as_expected() {
-        let of = |ratios: &[AtCount]| expectations(Noise(0.05), ratios);
+        let of = |ratios: &[AtCount]| expectations(|_| Noise(0.05), ratios);
         assert_eq!(of(&[(10, 0.9), (250, 1.5), (500, 2.0), (1000, 4.0)]), [Case::Yes, Case::Yes]);
         assert_eq!(of(&[(10, 0.9), (250, 0.5), (500, 2.0), (1000, 4.0)]), [Case::No, Case::Yes]);
         assert_eq!(of(&[(10, 0.9), (250, 4.0), (500, 2.0)]), [Case::Yes, Case::No, Case::No]);

@@ -36,13 +36,15 @@ fn one_or_none(depth: &Runs<'_>) -> Figure {
         let paired = runs.filter(|run| has_both(&runs, run));
         let ratio = |count: u32| {
             let runs = paired.at(count);
-            let of = |leaf: u32| runs.filter(|run| run.min_spheres == leaf).fps();
-            Some((count, of(1)? / of(0)?))
+            let of = |leaf: u32| runs.filter(|run| run.min_spheres == leaf);
+            let (ratio, noise) = of(1).against(&of(0))?;
+            Some(((count, ratio), noise))
         };
-        let ratios: Vec<AtCount> = paired.counts().into_iter().filter_map(ratio).collect();
+        let (ratios, noises): (Vec<AtCount>, Vec<Noise>) =
+            paired.counts().into_iter().filter_map(ratio).unzip();
         let caption = format!("{name}, averaged over the depths that were measured with both");
         parts.push(bars(&paired, caption, |runs| runs.fps()));
-        cases.extend(ratios.iter().map(|pair| as_claimed(runs.noise(), *pair)));
+        cases.extend(ratios.iter().zip(noises).map(|(pair, noise)| as_claimed(noise, *pair)));
         let of = |wanted: fn(u32) -> bool| {
             ratios_text(&ratios.iter().copied().filter(|(count, _)| wanted(*count)).collect::<Vec<_>>())
         };
@@ -84,23 +86,26 @@ fn larger(depth: &Runs<'_>) -> Figure {
     let (mut parts, mut cases, mut reasons) = (Vec::new(), Vec::new(), String::new());
     for Subject { name, runs } in depth.filter(|run| run.min_spheres > 0).octrees() {
         parts.push(bars(&runs, format!("{name}, each at its best depth"), fastest));
-        let speeds = |count: &u32| (*count, leaf_speeds(&runs.at(*count)));
-        let speeds: Vec<(u32, Vec<(u32, f64)>)> = runs.counts().iter().map(speeds).collect();
-        let gain = |(count, speeds): &(u32, Vec<(u32, f64)>)| Some((*count, larger_gain(speeds)?));
-        let gains: Vec<AtCount> = speeds.iter().filter_map(gain).collect();
-        let (small, large): (Vec<AtCount>, Vec<AtCount>) =
-            gains.iter().partition(|(count, _)| *count <= SMALL);
-        cases.extend(small.iter().map(|(_, gain)| runs.noise().faster(*gain)));
-        let mean =
-            |gains: &[AtCount]| geometric_mean(&gains.iter().map(|(_, gain)| *gain).collect::<Vec<_>>());
-        let best: Vec<Best> =
-            speeds.iter().filter_map(|(count, speeds)| Best::of(runs.noise(), *count, speeds)).collect();
-        reasons += &format!("{name}: larger against 1: {}", ratios_text(&small));
+        let fastest = runs.filter(|run| is_fastest(&runs, run));
+        let gain = |count: u32| Some((count, larger_gain(&fastest.at(count))?));
+        let gains: Vec<(u32, (f64, Noise))> = fastest.counts().into_iter().filter_map(gain).collect();
+        let (small, large): (Vec<_>, Vec<_>) = gains.into_iter().partition(|(count, _)| *count <= SMALL);
+        cases.extend(small.iter().map(|(_, (gain, noise))| noise.faster(*gain)));
+        let ratios: Vec<AtCount> = small.iter().map(|(count, (gain, _))| (*count, *gain)).collect();
+        reasons += &format!("{name}: larger against 1: {}", ratios_text(&ratios));
+        let mean = |gains: &[(u32, (f64, Noise))]| {
+            geometric_mean(&gains.iter().map(|(_, (gain, _))| *gain).collect::<Vec<_>>())
+        };
         if let Some((small, large)) = mean(&small).zip(mean(&large)) {
-            cases.push(runs.noise().faster(small / large));
+            let (few, many) =
+                (fastest.filter(|run| run.spheres <= SMALL), fastest.filter(|run| run.spheres > SMALL));
+            let compared = [few, many].map(|runs| one_and_larger(&runs));
+            cases.push(runs.noise_of(compared.as_flattened()).faster(small / large));
             reasons +=
                 &format!(", on average {} in small scenes and {} in larger ones", times(small), times(large));
         }
+        let best: Vec<Best> =
+            fastest.counts().into_iter().filter_map(|count| best_leaf(&fastest.at(count), count)).collect();
         reasons += &format!("; best {}. ", best_text(&best));
     }
     Figure {
@@ -123,20 +128,35 @@ fn fastest(runs: &Runs<'_>) -> Option<f64> {
     runs.iter().map(|run| run.fps).reduce(f64::max)
 }
 
-fn leaf_speeds(runs: &Runs<'_>) -> Vec<(u32, f64)> {
-    let at = |leaf: u32| Some((leaf, fastest(&runs.filter(|run| run.min_spheres == leaf))?));
-    runs.values(|run| run.min_spheres).into_iter().filter_map(at).collect()
+/// True if no depth is faster with these spheres and this smallest node.
+fn is_fastest(runs: &Runs<'_>, run: &Run) -> bool {
+    let alike = runs.at(run.spheres).filter(|other| other.min_spheres == run.min_spheres);
+    alike.iter().all(|other| other.fps <= run.fps)
 }
 
-/// How many times faster larger nodes are on average than a smallest node of 1.
-fn larger_gain(speeds: &[(u32, f64)]) -> Option<f64> {
-    let one = speeds.iter().find(|(leaf, _)| *leaf == 1)?.1;
-    let larger = speeds.iter().filter(|(leaf, _)| *leaf > 1);
-    geometric_mean(&larger.map(|(_, speed)| speed / one).collect::<Vec<_>>())
+/// Those with a smallest node of 1, and those with larger ones.
+fn one_and_larger<'a>(runs: &Runs<'a>) -> [Runs<'a>; 2] {
+    [runs.filter(|run| run.min_spheres == 1), runs.filter(|run| run.min_spheres > 1)]
+}
+
+/// How many times faster larger nodes are on average than a smallest node of 1, and how far that may be off.
+fn larger_gain(fastest: &Runs<'_>) -> Option<(f64, Noise)> {
+    let [one, larger] = one_and_larger(fastest);
+    larger.against(&one)
+}
+
+/// The best smallest nodes of a number of spheres.
+fn best_leaf(fastest: &Runs<'_>, spheres: u32) -> Option<Best> {
+    let of = |leaf: u32| fastest.filter(|run| run.min_spheres == leaf);
+    let leaves = fastest.values(|run| run.min_spheres);
+    let speeds: Vec<(u32, f64)> =
+        leaves.into_iter().filter_map(|leaf| Some((leaf, of(leaf).fps()?))).collect();
+    Best::of(|a, b| fastest.noise_of(&[of(a), of(b)]), spheres, &speeds)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::record::example;
     use super::*;
 
     #[test]
@@ -153,7 +173,15 @@ mod tests {
         ] {
             assert_eq!(as_claimed(Noise(0.05), pair), case, "{pair:?}");
         }
-        assert!((larger_gain(&[(1, 10.0), (2, 20.0), (4, 20.0)]).unwrap() - 2.0).abs() < 1e-12);
-        assert_eq!(larger_gain(&[(2, 20.0)]), None);
+    }
+
+    #[test]
+    fn larger_nodes_are_compared_with_one_sphere_at_their_best_depths() {
+        let run = |(min_spheres, fps)| Run { min_spheres, fps, ..example() };
+        let runs = [(1, 5.0), (1, 10.0), (2, 20.0), (4, 20.0)].map(run);
+        let all = Runs::all(&runs);
+        let fastest = all.filter(|run| is_fastest(&all, run));
+        assert!((larger_gain(&fastest).unwrap().0 - 2.0).abs() < 1e-12);
+        assert_eq!(larger_gain(&fastest.filter(|run| run.min_spheres > 1)), None);
     }
 }

@@ -19,7 +19,7 @@ use super::select::{Runs, backend_name};
 use crate::kit::chart::{Chart, Ink, Kind, Series};
 use crate::kit::draw::{count_names, ratio_table, series, structure_ink, structure_lines};
 use crate::kit::figure::{Figure, Part};
-use crate::kit::verdict::AtCount;
+use crate::kit::verdict::{AtCount, Noise};
 
 /// The last figure of the report.
 pub(crate) const LAST_OF_REPORT: u32 = 21;
@@ -62,6 +62,11 @@ impl Ratios {
 
     fn at(&self, count: u32) -> Option<f64> {
         self.ratios.iter().find(|(c, _)| *c == count).map(|(_, ratio)| *ratio)
+    }
+
+    /// How far the ratios to a structure at some counts may be off.
+    fn noise(&self, runs: &Runs<'_>, slow: &str, counts: &[u32]) -> Noise {
+        runs.on(&self.backend).noise_between(self.structure, slow, counts)
     }
 
     fn line(&self, counts: &[u32]) -> Series {

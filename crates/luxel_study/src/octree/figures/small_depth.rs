@@ -2,13 +2,12 @@
 use super::super::record::{Run, Sweep};
 use super::super::select::{FPS_LIMIT, Limit, Runs, Subject};
 use super::best::{Best, best_grows, best_text};
-use super::depth::{as_reported, speeds};
+use super::depth::{as_reported, noise_of_depths, of_depth, speeds};
 use super::{depth_ink, over_counts, series};
 use crate::kit::chart::Kind;
 use crate::kit::figure::{Figure, Part};
-use crate::kit::stats::geometric_mean;
 use crate::kit::text::{count, times};
-use crate::kit::verdict::{AtCount, Case, Verdict, growth, ratios_text, spread};
+use crate::kit::verdict::{AtCount, Case, Noise, Verdict, growth, ratios_text};
 
 /// Depths up to this.
 const SMALL_DEPTH: u32 = 5;
@@ -24,8 +23,7 @@ pub(crate) fn figures(runs: &Runs<'_>) -> Vec<Figure> {
 fn depth_bars(runs: &Runs<'_>, caption: String, limit: Limit) -> Part {
     let counts = runs.counts();
     let bar = |depth: u32| {
-        let of_depth = runs.filter(|run| run.max_depth == depth);
-        let fps = |count| of_depth.at(count).speed(limit);
+        let fps = |count| of_depth(runs, depth).at(count).speed(limit);
         series(format!("depth {depth}"), depth_ink(depth), &counts, fps)
     };
     let bars = runs.values(|run| run.max_depth).into_iter().map(bar).collect();
@@ -40,10 +38,12 @@ fn without_limit(small: &Runs<'_>) -> Figure {
             parts.push(depth_bars(&runs, format!("{name}, smallest node {leaf}"), Limit::Off));
         }
         let gain = gain_of_one(&runs);
-        let fall = runs.at(10).fps().zip(runs.at(50).fps()).map(|(ten, fifty)| ten / fifty);
-        cases.extend(gain.map(|gain| runs.noise().faster(gain)));
-        cases.extend(fall.map(|fall| runs.noise().much_faster(fall)));
-        let said = |value: Option<f64>| value.map_or_else(|| "not measured".to_owned(), times);
+        let fall = runs.at(10).against(&runs.at(50));
+        cases.extend(gain.map(|(gain, noise)| noise.faster(gain)));
+        cases.extend(fall.map(|(fall, noise)| noise.much_faster(fall)));
+        let said = |value: Option<(f64, Noise)>| {
+            value.map_or_else(|| "not measured".to_owned(), |(value, _)| times(value))
+        };
         reasons += &format!(
             "{name}: speed with a smallest node of 1 against 0: {}; with 10 spheres against 50: {}. ",
             said(gain),
@@ -62,14 +62,15 @@ fn without_limit(small: &Runs<'_>) -> Figure {
     }
 }
 
-/// How many times faster a smallest node of 1 is than one of 0, over all that was measured with both.
-fn gain_of_one(runs: &Runs<'_>) -> Option<f64> {
-    let zeros = runs.filter(|run| run.min_spheres == 0 && run.max_depth > 0);
-    let ratio = |zero: &Run| {
-        let one = runs.at(zero.spheres).filter(|run| (run.min_spheres, run.max_depth) == (1, zero.max_depth));
-        Some(one.fps()? / zero.fps)
+/// How many times faster a smallest node of 1 is than one of 0, over all that was measured with both, and how far that
+/// may be off.
+fn gain_of_one(runs: &Runs<'_>) -> Option<(f64, Noise)> {
+    let of = |leaf: u32| runs.filter(|run| run.min_spheres == leaf && run.max_depth > 0);
+    let shared = |runs: &Runs<'_>, run: &Run| {
+        runs.iter().any(|other| (other.spheres, other.max_depth) == (run.spheres, run.max_depth))
     };
-    geometric_mean(&zeros.iter().filter_map(ratio).collect::<Vec<_>>())
+    let (zeros, ones) = (of(0), of(1));
+    ones.filter(|one| shared(&zeros, one)).against(&zeros.filter(|zero| shared(&ones, zero)))
 }
 
 fn with_limit(small: &Runs<'_>) -> Figure {
@@ -79,16 +80,15 @@ fn with_limit(small: &Runs<'_>) -> Figure {
         parts.push(depth_bars(&runs, caption, Limit::On).with_level(FPS_LIMIT));
         let counts = runs.counts();
         let [fewest, .., most] = counts[..] else { continue };
-        let few: Vec<f64> = speeds(&runs.at(fewest), Limit::On).into_iter().map(|(_, speed)| speed).collect();
-        let few = spread(&few).unwrap_or(1.0);
-        cases.push(runs.noise().alike(few));
+        let Some((few, noise)) = spread_of_depths(&runs.at(fewest)) else { continue };
+        cases.push(noise.alike(few));
         let fewest = count(u64::from(fewest));
         reasons += &match times(few) {
             same if same == "1×" => format!("{name}: all depths are equally fast at {fewest} spheres"),
             apart => format!("{name}: the fastest depth is {apart} the slowest at {fewest} spheres"),
         };
-        if let Some(gain) = gain_of_depth(&runs.at(most)) {
-            cases.push(runs.noise().much_faster(gain));
+        if let Some((gain, depth)) = gain_of_depth(&runs.at(most)) {
+            cases.push(noise_of_depths(&runs.at(most), [depth, 0]).much_faster(gain));
             reasons += &format!(", the best is {} depth 0 at {}", times(gain), count(u64::from(most)));
         }
         reasons += ". ";
@@ -107,20 +107,37 @@ fn with_limit(small: &Runs<'_>) -> Figure {
     }
 }
 
-/// How many times faster the best depth is than depth 0.
-fn gain_of_depth(runs: &Runs<'_>) -> Option<f64> {
+/// How far the speeds of all depths lie apart, and how far that may be off.
+fn spread_of_depths(runs: &Runs<'_>) -> Option<(f64, Noise)> {
+    let mut speeds = speeds(runs, Limit::On);
+    speeds.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let ((slow, least), (fast, most)) = (speeds.first()?, speeds.last()?);
+    Some((most / least, noise_of_depths(runs, [*fast, *slow])))
+}
+
+/// How many times faster the best depth is than depth 0, and that depth.
+fn gain_of_depth(runs: &Runs<'_>) -> Option<(f64, u32)> {
     let speeds = speeds(runs, Limit::On);
     let flat = speeds.iter().find(|(depth, _)| *depth == 0)?.1;
-    let divided = speeds.iter().filter(|(depth, _)| *depth > 0).map(|(_, speed)| speed / flat);
-    divided.reduce(f64::max)
+    let divided = speeds.iter().filter(|(depth, _)| *depth > 0).map(|(depth, speed)| (speed / flat, *depth));
+    divided.max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// How far the growth of the best gain between two numbers of spheres may be off.
+fn noise_of_gains(runs: &Runs<'_>, counts: [u32; 2]) -> Noise {
+    let of = |count: u32| {
+        let runs = runs.at(count);
+        let best = gain_of_depth(&runs).map_or(0, |(_, depth)| depth);
+        [best, 0].map(|depth| of_depth(&runs, depth))
+    };
+    runs.noise_of(counts.map(of).as_flattened())
 }
 
 fn ratio_to_flat(small: &Runs<'_>) -> Figure {
     let (mut parts, mut cases, mut reasons) = (Vec::new(), Vec::new(), String::new());
     for Subject { name, runs } in small.octrees() {
         let counts = runs.counts();
-        let at =
-            |count: u32, depth: u32| runs.at(count).filter(|run| run.max_depth == depth).speed(Limit::On);
+        let at = |count: u32, depth: u32| of_depth(&runs.at(count), depth).speed(Limit::On);
         let divided = runs.filter(|run| run.max_depth > 0);
         let bar = |depth: u32| {
             let ratio = |count| Some(at(count, depth)? / at(count, 0)?);
@@ -130,11 +147,11 @@ fn ratio_to_flat(small: &Runs<'_>) -> Figure {
         let y = "speed against depth 0 (×)";
         parts.push(over_counts(name.clone(), Kind::Bars, y, &counts, false, bars).with_level(1.0));
         let best: Vec<Best> = super::depth::best_by_count(&divided, Limit::On);
-        let best_ratio = |count: &u32| Some((*count, gain_of_depth(&runs.at(*count))?));
+        let best_ratio = |count: &u32| Some((*count, gain_of_depth(&runs.at(*count))?.0));
         let ratios: Vec<AtCount> = counts.iter().filter_map(best_ratio).collect();
         cases.extend(as_reported(&best, &REPORTS_BEST));
         cases.extend(best_grows(&best));
-        cases.extend::<Vec<Case>>(growth(runs.noise(), &ratios));
+        cases.extend::<Vec<Case>>(growth(|a, b| noise_of_gains(&runs, [a, b]), &ratios));
         reasons += &format!("{name}: best depth {}; best ratio {}. ", best_text(&best), ratios_text(&ratios));
     }
     Figure {

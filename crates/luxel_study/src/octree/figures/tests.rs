@@ -14,7 +14,7 @@ fn answer(runs: &[Run], number: u32) -> Answer {
 }
 
 fn run(sweep: Sweep, structure: &str, spheres: u32, depth: u32, min_spheres: u32, fps: f64) -> Run {
-    Run {
+    let run = Run {
         sweep,
         structure: structure.to_owned(),
         spheres,
@@ -23,10 +23,9 @@ fn run(sweep: Sweep, structure: &str, spheres: u32, depth: u32, min_spheres: u32
         min_spheres,
         // Each is a tree of its own, and so no repeat.
         nodes: 1 + 100 * depth + min_spheres,
-        fps,
-        frame_ms: 1e3 / fps,
         ..example()
-    }
+    };
+    run.with_frames([1e3 / fps; 3])
 }
 
 /// Runs of both octrees over the depth.
@@ -262,4 +261,40 @@ fn large_scenes_must_not_take_time_in_proportion() {
     };
     assert_eq!(answer(&runs(50.0).collect::<Vec<_>>(), 26), Answer::Holds);
     assert_eq!(answer(&runs(0.1).collect::<Vec<_>>(), 26), Answer::Fails);
+}
+
+/// The medians are those of claims that hold, but the frames scatter more than they differ.
+#[test]
+fn frames_that_overlap_tell_nothing_however_far_apart_their_medians_are() {
+    let scattered = |runs: Vec<Run>, scatter: f64| -> Vec<Run> {
+        let of = |run: Run| {
+            let ms = run.frame_ms;
+            run.with_frames([ms / scatter, ms, ms * scatter])
+        };
+        runs.into_iter().map(of).collect()
+    };
+    let counts = || {
+        let mut runs = Vec::new();
+        for (count, ratio) in [(500, 2.0), (1000, 4.0), (2000, 8.0)] {
+            runs.push(run(Sweep::Counts, "naive", count, 20, 8, 10.0));
+            runs.extend(OCTREES.map(|name| run(Sweep::Counts, name, count, 6, 1, 10.0 * ratio)));
+        }
+        runs
+    };
+    let depth = || {
+        let at = |spheres, best| depths(spheres, move |depth| if depth == best { 100.0 } else { 50.0 });
+        [at(10, 1), at(2000, 4)].concat()
+    };
+    // A ratio of two speeds is off by the square of what the frames scatter, one of two ratios by its square.
+    for (number, runs, told, open) in [
+        (9, grid(2.0), 1.3, 1.5),
+        (11, counts(), 1.3, 3.0),
+        (12, counts(), 1.1, 1.5),
+        (13, grid(2.0), 1.3, 1.5),
+        (15, depth(), 1.3, 1.5),
+        (27, depth(), 1.3, 1.5),
+    ] {
+        assert_eq!(answer(&scattered(runs.clone(), told), number), Answer::Holds, "figure {number}");
+        assert_eq!(answer(&scattered(runs, open), number), Answer::Open, "figure {number}");
+    }
 }

@@ -5,7 +5,7 @@ use super::{Ratios, count_names, fps_over_counts, over_counts, ratio_table, rati
 use crate::kit::chart::Kind;
 use crate::kit::figure::{Figure, Part};
 use crate::kit::text::{count, list, times};
-use crate::kit::verdict::{Case, Verdict, growth, ratios_text};
+use crate::kit::verdict::{AtCount, Case, Verdict, growth, ratios_text};
 
 /// From this number of spheres on the report calls its scenes larger.
 const LARGER: u32 = 500;
@@ -23,13 +23,13 @@ fn both_ratios(runs: &Runs<'_>) -> Vec<Ratios> {
     ratios_of(runs, &[OURS, REPORTS], NAIVE)
 }
 
-/// Whether they are faster, each by the noise of its backend.
+/// Whether they are faster than naive, each by its noise.
 fn all_faster(runs: &Runs<'_>, all: &[Ratios]) -> Vec<Case> {
-    let cases = all.iter().flat_map(|of| {
-        let noise = runs.on(&of.backend).noise();
-        of.ratios.iter().map(move |(_, ratio)| noise.faster(*ratio))
-    });
-    cases.collect()
+    let cases = |of: &Ratios| {
+        let case = |(count, ratio): &AtCount| of.noise(runs, NAIVE, &[*count]).faster(*ratio);
+        of.ratios.iter().map(case).collect::<Vec<_>>()
+    };
+    all.iter().flat_map(cases).collect()
 }
 
 fn all_ratios_text(all: &[Ratios]) -> String {
@@ -81,7 +81,7 @@ fn by_count_and_quality(grid: &Runs<'_>) -> Figure {
         }
         let ratios = both_ratios(&runs.at(SMALLEST));
         cases.extend(
-            ratios.iter().filter_map(|of| Some(runs.on(&of.backend).noise().slower(of.at(SMALLEST)?))),
+            ratios.iter().filter_map(|of| Some(of.noise(&runs, NAIVE, &[SMALLEST]).slower(of.at(SMALLEST)?))),
         );
         let said = |of: &Ratios| Some(format!("{} ({}, {quality})", times(of.at(SMALLEST)?), of.name()));
         reasons.extend(ratios.iter().filter_map(said));
@@ -132,7 +132,7 @@ fn advantage(runs: &Runs<'_>) -> Figure {
     let y = "speed against naive (×)";
     let part = over_counts("Speed against naive".to_owned(), Kind::Lines, y, &counts, true, lines);
     let cases: Vec<Case> =
-        ratios.iter().flat_map(|of| growth(runs.on(&of.backend).noise(), &of.ratios)).collect();
+        ratios.iter().flat_map(|of| growth(|a, b| of.noise(runs, NAIVE, &[a, b]), &of.ratios)).collect();
     Figure {
         number: 12,
         title: "Performance advantage dependent on Number of Spheres".to_owned(),

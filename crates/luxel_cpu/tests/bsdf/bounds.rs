@@ -1,0 +1,186 @@
+//! How much a sample may weigh (L08): a bound that follows from how lobes are chosen.
+//!
+//! A weight is the sum of the lobes' values over the sum of their densities, so at most the largest quotient of one lobe;
+//! and a lobe is chosen by the share of the light that it is thought to carry, over what all lobes are. What follows are
+//! these quotients, from the albedo tables.
+use luxel_flat::{MATERIAL_PRINCIPLED, MATERIAL_THIN, MaterialRecord};
+use luxel_geom::albedo::{TABLES, lookup};
+use luxel_geom::{microfacet, optics, schlick, warp};
+
+/// Index of the clear coat.
+const COAT_INDEX: f64 = 1.5;
+/// How far tables, and sums over few points, may be off.
+const SLACK: f64 = 1.01;
+/// Cosines to look for the largest quotient of returned light at.
+const STEPS: u32 = 1000;
+
+/// The base of a principled material, seen from one side under a cosine.
+struct Seen<'a> {
+    record: &'a MaterialRecord,
+    cos: f64,
+    roughness: f64,
+    alpha: f64,
+    is_smooth: bool,
+    /// Index on the far side over that on the near side.
+    eta: f64,
+    metal: f64,
+    dielectric: f64,
+    clear: f64,
+    /// The largest share of one channel in the mean of three.
+    tint: f64,
+}
+
+/// The most that a sample may weigh, in terms of energy.
+pub(crate) fn most(record: &MaterialRecord, cos: f32, front: bool) -> f32 {
+    if record.kind != MATERIAL_PRINCIPLED {
+        // One lobe, or two that are chosen by what they reflect.
+        return 1.0 + 1e-4;
+    }
+    let seen = Seen::new(record, cos.into(), front);
+    let quotients = [seen.facets(), seen.diffuse(), seen.returned(), seen.coat()];
+    (SLACK * seen.carried() * quotients.into_iter().fold(1.0, f64::max)) as f32
+}
+
+impl<'a> Seen<'a> {
+    fn new(record: &'a MaterialRecord, cos: f64, front: bool) -> Self {
+        let is_inside = !front && record.transmission > 0.0 && record.flags & MATERIAL_THIN == 0;
+        let (index, roughness) = (f64::from(record.ior), f64::from(record.roughness));
+        let alpha = microfacet::alpha_of_roughness(roughness);
+        let metal = f64::from(record.metallic);
+        let is_grey = [record.color, record.specular_color].iter().all(|c| c[0] == c[1] && c[1] == c[2]);
+        Self {
+            record,
+            cos,
+            roughness,
+            alpha,
+            is_smooth: microfacet::is_effectively_smooth(alpha),
+            eta: if is_inside { 1.0 / index } else { index },
+            metal,
+            dielectric: 1.0 - metal,
+            clear: (1.0 - metal) * f64::from(record.transmission),
+            tint: if is_grey { 1.0 } else { 3.0 },
+        }
+    }
+
+    /// Share that one scattering at microfacets keeps if all of them reflect.
+    fn kept(&self, cos: f64) -> f64 {
+        if self.is_smooth { 1.0 } else { 1.0 - lookup::conductor_loss(&TABLES, cos, self.roughness) }
+    }
+
+    /// Of what is kept, the exact reflectance.
+    fn reflectance(&self, cos: f64) -> f64 {
+        if self.is_smooth || self.eta < 1.0 {
+            return optics::fresnel_dielectric(cos, self.eta).reflectance;
+        }
+        lookup::mean_reflectance(&TABLES, cos, self.roughness, self.eta)
+    }
+
+    /// Least share of the exact reflectance, and of what passes it, in a tinted one's: see `fresnel::Dielectric`.
+    fn exact(&self) -> f64 {
+        let f0 = schlick::eta_to_f0(self.eta);
+        let share = |tint: f64| if tint > 1.0 { ((1.0 - tint * f0) / (1.0 - f0)).max(0.0) } else { tint };
+        self.record.specular_color.into_iter().map(|tint| share(tint.into())).fold(1.0, f64::min)
+    }
+
+    fn strength(&self) -> f64 {
+        self.record.specular.into()
+    }
+
+    /// What all lobes are thought to carry together: all light, and more where clear microfacets lose what they would mirror
+    /// if they mirrored as level ones do.
+    fn carried(&self) -> f64 {
+        if self.clear == 0.0 { 1.0 } else { 1.0 + (self.kept(self.cos) - self.glass_kept()).max(0.0) }
+    }
+
+    /// Share that one scattering at clear microfacets keeps.
+    fn glass_kept(&self) -> f64 {
+        if self.is_smooth || self.record.flags & MATERIAL_THIN != 0 {
+            return self.kept(self.cos);
+        }
+        1.0 - lookup::glass_loss(&TABLES, self.cos, self.roughness, self.eta)
+    }
+
+    /// What meets microfacets is mirrored or passes, all of it at most; they are chosen by their albedos.
+    fn facets(&self) -> f64 {
+        let kept = self.kept(self.cos);
+        let tints = self.record.specular_color.map(|tint| f64::from(tint.min(1.0)));
+        // Tints above one only add to what is mirrored.
+        let mirrored = self.strength() * kept * self.reflectance(self.cos) * tints.iter().sum::<f64>() / 3.0;
+        let is_tinted = self.record.specular_color != [1.0; 3];
+        let most_mirrored = if is_tinted { kept * self.strength() } else { mirrored };
+        let color = self.record.color.into_iter().map(f64::from);
+        let passing = color.clone().sum::<f64>() / 3.0 * (self.glass_kept() - most_mirrored).max(0.0);
+        let metal = color.sum::<f64>() / 3.0 * kept;
+        let carried = mirrored * self.dielectric + passing * self.clear + metal * self.metal;
+        let largest = if self.clear > 0.0 { 1.0 } else { self.strength() * self.dielectric + self.metal };
+        if carried > 0.0 { self.tint * largest / carried } else { 0.0 }
+    }
+
+    /// Least share that what lies over the diffuse base lets through.
+    fn passing(&self, cos: f64) -> f64 {
+        let kept = self.kept(cos);
+        let passing = 1.0 - kept + self.exact() * kept * (1.0 - self.reflectance(cos));
+        1.0 - self.strength() * (1.0 - passing)
+    }
+
+    /// The diffuse base gets what passes on the way in; on the way out it is divided by the mean of that.
+    fn diffuse(&self) -> f64 {
+        if self.clear == self.dielectric {
+            return 0.0;
+        }
+        if self.record.clearcoat == 0.0 && self.eta >= 1.0 {
+            let loss = lookup::conductor_loss_average::<f64>(&TABLES, self.roughness);
+            let passing = lookup::coat_passing_average(&TABLES, self.roughness, self.eta);
+            let loss = if self.is_smooth { 0.0 } else { loss };
+            return self.tint / (1.0 - self.strength() * (1.0 - loss - self.exact() * passing));
+        }
+        let under =
+            |cos: f64| self.passing(cos) * (1.0 - f64::from(self.record.clearcoat) * self.coat_albedo(cos));
+        let sum: f64 =
+            cosines().map(|cos| cos - 0.5 / f64::from(STEPS)).map(|cos| 2.0 * cos * under(cos)).sum();
+        // A rule of few points is not exact either.
+        self.tint * SLACK / (sum / f64::from(STEPS))
+    }
+
+    /// Light that single scattering loses comes back in proportion to what it loses there.
+    fn returned(&self) -> f64 {
+        if self.is_smooth {
+            return 0.0;
+        }
+        let r = self.roughness;
+        let largest = |average: f64, loss: &dyn Fn(f64) -> f64| {
+            let quotient = |cos| {
+                loss(cos) * cos
+                    / (std::f64::consts::PI * average * warp::level_hemisphere_pdf(self.alpha, cos))
+            };
+            self.tint * cosines().map(quotient).fold(0.0, f64::max)
+        };
+        let conductor =
+            largest(lookup::conductor_loss_average(&TABLES, r), &|c| lookup::conductor_loss(&TABLES, c, r));
+        if self.clear == 0.0 || self.record.flags & MATERIAL_THIN != 0 {
+            return conductor;
+        }
+        let glass = |eta: f64| {
+            largest(lookup::glass_loss_average(&TABLES, r, eta), &|c| lookup::glass_loss(&TABLES, c, r, eta))
+        };
+        conductor.max(glass(self.eta)).max(glass(1.0 / self.eta))
+    }
+
+    fn coat_albedo(&self, cos: f64) -> f64 {
+        let roughness = f64::from(self.record.clearcoat_roughness);
+        if microfacet::is_effectively_smooth(microfacet::alpha_of_roughness(roughness)) {
+            return optics::fresnel_dielectric(cos, COAT_INDEX).reflectance;
+        }
+        let kept = 1.0 - lookup::conductor_loss(&TABLES, cos, roughness);
+        kept * lookup::mean_reflectance(&TABLES, cos, roughness, COAT_INDEX)
+    }
+
+    /// The coat's microfacets reflect all at most; they are chosen by their albedo.
+    fn coat(&self) -> f64 {
+        if self.record.clearcoat == 0.0 { 0.0 } else { 1.0 / self.coat_albedo(self.cos) }
+    }
+}
+
+fn cosines() -> impl Iterator<Item = f64> {
+    (1..=STEPS).map(|n| f64::from(n) / f64::from(STEPS))
+}
