@@ -10,7 +10,7 @@ use luxel_flat::{
 use luxel_geom::{Affine, Ray, rng};
 use luxel_testkit::Random;
 
-use crate::bounds::SRGB;
+use crate::bounds::{SRGB, TEXTURE};
 use crate::cases::{Case, xyz};
 use crate::inputs::{input, unit};
 use crate::judge::{Expected, Input};
@@ -63,6 +63,16 @@ fn texture_errors(slot: &TextureSlot, [u, v]: [f32; 2], given: f32) -> f32 {
     decoded + 21.0 + across + down
 }
 
+/// What a texture's errors are in parts of, at most [`TEXTURE`]: a decoded texel, and steps between texels, as
+/// coordinates move by 16 u of their terms.
+fn texture_scale(slot: &TextureSlot, [u, v]: [f32; 2]) -> f32 {
+    let terms = |row: [f32; 3]| (row[0] * u).abs() + (row[1] * v).abs() + row[2].abs() + 1.0;
+    let across = terms(slot.row_u) * (slot.size & 0xffff) as f32;
+    let down = terms(slot.row_v) * (slot.size >> 16) as f32;
+    let decoded = if slot.flags & TEXTURE_SRGB == 0 { 0.0 } else { 1.0 };
+    decoded + (across + down) / 16.0
+}
+
 /// The largest of the errors of a place's textures in u; those of its normal map apart. The coordinates are three products
 /// with weights (4u) and their sum: 10u + 5u of the largest corner's.
 fn texture_errors_at(i: &Input, role: impl Fn(u32) -> bool) -> f32 {
@@ -88,7 +98,7 @@ fn normal_errors(i: &Input, s: &Surface<f32>) -> f32 {
     let mirrored = n * (2.0 * wo.dot(n)) - wo;
     let is_bent = (mirrored.dot(s.place.normal) * wo.dot(s.place.normal).signum()) < 0.011;
     let size = if is_bent { 2.0 * wo.dot(n).abs() } else { 1.0 };
-    (150.0 + 6.0 * map) / size.clamp(1e-6, 1.0)
+    ((150.0 + 6.0 * map) / size.clamp(1e-6, 1.0)).min(TEXTURE)
 }
 
 /// A place on one of the balls: instance and triangle in `code`, weights in `b` and `c`, the ray in `a` and `b`.
@@ -157,6 +167,7 @@ fn surface_part(i: &Input) -> Expected {
     let reach = s.place.point.abs().max_element() + 1.0;
     // A texture times a corner's colour (24u, interpolated) and the material's: at most one, so shares of one.
     let textured = texture_errors_at(i, |role| role != TEXTURE_ROLE_NORMAL) + 32.0;
+    let textured = textured.min(TEXTURE);
     let of = |values: [f32; 4]| Expected::scaled(key, values, textured);
     match i.code[2] {
         // As triangle_point_inside and transform_point.
@@ -188,7 +199,8 @@ pub(crate) static CASES: [Case; 4] = [
             let (slot, uv) = (slot(i), [[u0, v0], [u1, v1]]);
             let texel = texture::sample_texture::<f32>(&SCENE, &slot, &uv, &mut Counters::default());
             let set = usize::from(slot.flags & TEXTURE_UV1 != 0);
-            Expected::scaled(1, texel, texture_errors(&slot, uv[set], 0.0))
+            let errors = texture_errors(&slot, uv[set], 0.0).min(TEXTURE * texture_scale(&slot, uv[set]));
+            Expected::scaled(1, texel, errors)
         },
         make: textured,
     },

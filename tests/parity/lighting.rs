@@ -4,14 +4,14 @@ use std::f32::consts::{PI, TAU};
 use glam::{DVec3, Vec3};
 use luxel_cpu::lights::{self, Receiver};
 use luxel_cpu::sky;
-use luxel_flat::{Counters, FeatureSet, LIGHT_TRIANGLE};
+use luxel_flat::{Counters, Feature, FeatureSet, LIGHT_TRIANGLE};
 use luxel_geom::{equirect, octahedral};
 use luxel_testkit::Random;
 
-use crate::bounds::ATAN2;
+use crate::bounds::{ATAN2, SKY};
 use crate::cases::{Case, xyz};
 use crate::inputs::{input, unit};
-use crate::judge::{Expected, Input, sway};
+use crate::judge::{Expected, Input, U, jitter, sway};
 use crate::scene::SCENE;
 
 const NOTHING: (Vec3, f32) = (Vec3::ZERO, 0.0);
@@ -49,7 +49,7 @@ fn sampled_part(i: &Input) -> Expected {
     Expected { key, values, scale: [brightest, brightest, if is_far { 1.0 } else { reach }, brightest] }
 }
 
-/// A direction, every second near a sun, and a density.
+/// A direction, every second near a sun, and a density; and the direction again, in which the picture is looked at.
 fn sky_direction(r: &mut Random) -> Input {
     let suns = &SCENE.lights.as_slice()[..SCENE.params.distant_count as usize];
     let sun = Vec3::from_array(suns[r.below(suns.len() as u32) as usize].position);
@@ -57,7 +57,7 @@ fn sky_direction(r: &mut Random) -> Input {
     // The edge of the picture is in its one end or the other.
     let direction = if direction.x == 0.0 { Vec3::new(0.6, 0.48, 0.64) } else { direction };
     let pdf = [0.0, r.log_between(1e-3, 1e3)][r.below(2) as usize];
-    input([(direction, pdf), NOTHING, NOTHING, NOTHING])
+    input([(direction, pdf), (direction, 0.0), NOTHING, NOTHING])
 }
 
 /// What a direction's azimuth and polar angle may be wrong by, in u, both sides together: it is turned into the picture
@@ -68,25 +68,39 @@ fn angle_errors(direction: Vec3) -> [f32; 2] {
     [ATAN2 * PI + 13.0 / level, ATAN2 * level.atan2(direction.y) + 28.0]
 }
 
-/// The direction turned by no more than its angles may be wrong by: over a sun's rim, or over the border of a cell.
-pub(crate) fn turned(i: &Input, by: f32, random: &mut Random) -> Input {
-    let direction = xyz(i.a);
-    let [azimuth, polar] = angle_errors(direction).map(|error| f64::from(by * error * sway(random)));
+/// The same but for rounding. The rim of a sun is met without an angle, so what meets the suns is jittered; the cell of the
+/// picture is told by its angles, so there the direction may be one in the next cell, if that is within their errors.
+pub(crate) fn near_sky(i: &Input, by: f32, random: &mut Random) -> Input {
+    let direction = xyz(i.b);
+    let other = turned(direction, random);
+    let cell = |d: Vec3| picture_place(d).map(|place| place.floor() as i32);
+    let b = if cell(other) == cell(direction) { i.b } else { other.extend(0.0).to_array() };
+    Input { b, ..jitter(i, by, random) }
+}
+
+/// The direction turned by no more than its angles may be wrong by.
+fn turned(direction: Vec3, random: &mut Random) -> Vec3 {
+    let [azimuth, polar] = angle_errors(direction).map(|error| f64::from(U * error * sway(random)));
     let (level, height) = (f64::from(direction.x).hypot(direction.z.into()), f64::from(direction.y));
     let (sine, cosine) = (level.atan2(height) + polar).sin_cos();
     let (x, z) = (f64::from(direction.x).atan2(direction.z.into()) + azimuth).sin_cos();
-    let turned = DVec3::new(sine * x, cosine, sine * z).as_vec3();
-    Input { a: turned.extend(i.a[3]).to_array(), ..*i }
+    DVec3::new(sine * x, cosine, sine * z).as_vec3()
+}
+
+/// Where a direction is in the picture, in cells from its upper left corner.
+fn picture_place(direction: Vec3) -> [f32; 2] {
+    let params = &SCENE.params;
+    let (cos, sin) = (params.environment_cos, params.environment_sin);
+    let (x, z) = (cos * direction.x - sin * direction.z, sin * direction.x + cos * direction.z);
+    let (u, v) = equirect::direction_to_equirect::<f32>(Vec3::new(x, direction.y, z));
+    [u * params.environment_width as f32, v * params.environment_height as f32]
 }
 
 /// The largest differences of texels that are neighbours, across and down, around a direction's place.
 fn steps_near(direction: Vec3) -> [Vec3; 2] {
     let params = &SCENE.params;
-    let (cos, sin) = (params.environment_cos, params.environment_sin);
-    let (x, z) = (cos * direction.x - sin * direction.z, sin * direction.x + cos * direction.z);
-    let (u, v) = equirect::direction_to_equirect::<f32>(Vec3::new(x, direction.y, z));
     let [width, height] = [params.environment_width, params.environment_height].map(|size| size as i32);
-    let corner = [(u * width as f32 - 0.5).floor() as i32, (v * height as f32 - 0.5).floor() as i32];
+    let corner = picture_place(direction).map(|place| (place - 0.5).floor() as i32);
     let texel = |column: i32, row: i32| {
         let index = row.clamp(0, height - 1) * width + column.rem_euclid(width);
         Vec3::from_slice(&SCENE.environment.as_slice()[index as usize][..3])
@@ -102,14 +116,22 @@ fn steps_near(direction: Vec3) -> [Vec3; 2] {
 /// Errors of [`sky::gather`] in u, both sides together. All terms are positive, so theirs are shares of the result: a weight
 /// is a density (13u), a quotient (18u), its square (38u), a sum (21u of it) and a quotient (64u, in Rust 22u), and light is
 /// two mixtures, two products and a sum of three (22u + 11u). The place in the picture is off by its angles and 8u, and the
-/// light by that many steps between texels.
+/// light by that many steps between texels; but never by more than [`SKY`] of the light and the brightest texel.
 fn sky_errors(direction: Vec3, light: Vec3) -> Vec3 {
     let params = &SCENE.params;
     let [azimuth, polar] = angle_errors(direction);
     let across = params.environment_width as f32 * (azimuth / TAU + 8.0);
     let down = params.environment_height as f32 * (polar / PI + 8.0);
     let [step_across, step_down] = steps_near(direction);
-    light * 128.0 + (step_across * across + step_down * down) * params.environment_strength
+    let errors = light * 128.0 + (step_across * across + step_down * down) * params.environment_strength;
+    errors.min(Vec3::splat(SKY * (light.max_element() + params.environment_strength * brightest_texel())))
+}
+
+fn brightest_texel() -> f32 {
+    let params = &SCENE.params;
+    let texels =
+        &SCENE.environment.as_slice()[..(params.environment_width * params.environment_height) as usize];
+    texels.iter().flat_map(|texel| &texel[..3]).fold(0.0f32, |most, value| most.max(*value))
 }
 
 pub(crate) static CASES: [Case; 4] = [
@@ -166,8 +188,10 @@ pub(crate) static CASES: [Case; 4] = [
         imports: "import package::trace::sky::sky_light;",
         body: "return give(vec4f(sky_light(in.a.xyz, in.a.w), 0.0), 1u);",
         twin: |i| {
-            let (direction, counters) = (xyz(i.a), &mut Counters::default());
-            let light = sky::gather(&SCENE, FeatureSet::ALL, direction, i.a[3], counters);
+            let (direction, counters) = (xyz(i.b), &mut Counters::default());
+            let without_suns = FeatureSet::ALL.with(Feature::DistantLights, false);
+            let light = lights::gather_distant::<f32>(&SCENE, FeatureSet::ALL, xyz(i.a), i.a[3])
+                + sky::gather::<f32>(&SCENE, without_suns, direction, i.a[3], counters);
             let scale = sky_errors(direction, light).extend(0.0).to_array();
             Expected { key: 1, values: light.extend(0.0).to_array(), scale }
         },

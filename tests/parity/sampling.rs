@@ -3,6 +3,7 @@ use glam::Vec3;
 use luxel_geom::{emitter, equirect, normal_guard, octahedral, srgb, warp};
 use luxel_testkit::Random;
 
+use crate::bounds::GUARD;
 use crate::cases::{Case, square, xyz};
 use crate::inputs::{input, point, size, unit};
 use crate::judge::{Expected, Input};
@@ -30,8 +31,7 @@ fn guard_errors(ng: Vec3, ns: Vec3, wo: Vec3) -> f32 {
     let level = (ns - ng * ns.dot(ng)) * (least + cos_view) - (wo - ng * cos_view) * upright;
     let half = wo + level.normalize_or_zero() * (1.0 - least * least).sqrt() + ng * least;
     let of_level = 27.0 + 36.0 * (least + cos_view + upright);
-    let largest = 1.0 / UNIT;
-    30.0 + ((60.0 + of_level / level.length().max(UNIT)) / half.length().max(UNIT)).min(largest)
+    (30.0 + (60.0 + of_level / level.length().max(UNIT)) / half.length().max(UNIT)).min(GUARD)
 }
 
 fn any_word(r: &mut Random) -> Input {

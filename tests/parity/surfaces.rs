@@ -9,7 +9,7 @@ use luxel_geom::albedo::TABLES;
 use luxel_geom::{triangle, warp};
 use luxel_testkit::Random;
 
-use crate::bounds::SINE;
+use crate::bounds::{LEVEL, SINE};
 use crate::cases::{Case, square, xyz};
 use crate::inputs::{input, point, size, unit};
 use crate::judge::{Expected, Input, U};
@@ -124,7 +124,7 @@ fn level_errors(width: f32, u0: f32, direction: Vec3) -> [f32; 2] {
     let off = square * ((33.0 * exponent + 7.0) * exponent.exp() + 3.0) + 6.0 * direction.z * direction.z;
     let of_root = |root: f32| 12.0 + (off / root.max(f32::MIN_POSITIVE)).min((off / U).sqrt());
     let sine = direction.truncate().length();
-    [of_root(sine) + (SINE + 20.0) * sine, of_root(direction.z)]
+    [of_root(sine) + (SINE + 20.0) * sine, of_root(direction.z)].map(|errors| errors.min(LEVEL))
 }
 
 pub(crate) static CASES: [Case; 5] = [

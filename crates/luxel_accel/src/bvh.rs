@@ -37,8 +37,8 @@ use luxel_flat::{BvhNode, LEAF_COUNT_SHIFT};
 use luxel_geom::Aabb;
 
 use crate::AccelError;
-pub(crate) use cost::floor_cost;
 pub use cost::sah_cost;
+pub(crate) use cost::{floor_cost, half_area};
 use linked::LinkedTree;
 pub use options::{BvhOptions, BvhQuality, BvhSplit, MAX_BINS, Reinsertion};
 pub(crate) use primitive::Primitive;

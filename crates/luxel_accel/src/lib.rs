@@ -51,7 +51,7 @@ pub use error::AccelError;
 pub use light_tree::{
     LightBounds, LightTree, MAX_LIGHT_DEPTH, MAX_TREE_LIGHTS, build_light_tree, validate_light_tree,
 };
-pub use mesh::{MeshBvh, REBUILD_RATIO, Refit, build_mesh, mesh_triangles, validate_mesh};
+pub use mesh::{MAX_REFITS, MeshBvh, REBUILD_RATIO, Refit, build_mesh, mesh_triangles, validate_mesh};
 pub use octree::{OctreeOptions, RootCell, SphereOctree, octree_depth, validate_octree};
 pub use sphere_bvh::SphereBvh;
 pub use sphere_structure::{SphereOptions, SphereStructure};

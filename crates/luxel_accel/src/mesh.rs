@@ -4,7 +4,7 @@ use luxel_flat::{BvhNode, FAR, Triangle};
 use luxel_geom::{Aabb, triangle};
 use rayon::prelude::*;
 
-use crate::bvh::{floor_cost, validate_tree};
+use crate::bvh::{floor_cost, half_area, validate_tree};
 use crate::{AccelError, BvhOptions, build_bvh, sah_cost};
 
 /// A mesh ready to be placed in the flat scene.
@@ -22,6 +22,10 @@ pub struct MeshBvh {
     pub built_cost: f64,
     /// What of that no tree over these triangles could save: the cost of testing each where a ray meets its own box.
     pub built_floor: f64,
+    /// Half the surface of the root's box then.
+    pub built_area: f64,
+    /// Refits since then.
+    pub refits: u32,
 }
 
 /// What a refit made of a tree.
@@ -31,10 +35,16 @@ pub struct Refit {
     pub cost: f64,
     /// What of that no tree could save.
     pub floor: f64,
+    /// Half the surface of the root's box.
+    pub area: f64,
     /// [`sah_cost`] of the tree as it was built.
     pub built_cost: f64,
     /// What of that no tree could have saved.
     pub built_floor: f64,
+    /// Half the surface of the root's box then.
+    pub built_area: f64,
+    /// Refits since then, this one included.
+    pub refits: u32,
 }
 
 /// A refitted tree whose nodes cost more than this many times what they cost when built, beyond what no tree can save, is
@@ -42,11 +52,16 @@ pub struct Refit {
 /// triangles.
 pub const REBUILD_RATIO: f64 = 1.3;
 
-/// Where what no tree can save is by more than this another than when the tree was built, up or down, the triangles fill
-/// their box in another way (a heap that was a surface, a point that unfolds), and what a tree cost over them then says
-/// nothing about what one could cost now. Refits that stay between cost at most 1.5 times what a build would cost
-/// (`e01` in `tests/quality.rs`).
+/// Where what no tree can save is by more than this another than when the tree was built, up or down, and the triangles
+/// themselves are as much larger or smaller, they fill their box in another way (a heap that was a surface, a point that
+/// unfolds), and what a tree cost over them then says nothing about what one could cost now. What only grows as a whole,
+/// or moves far away, changes one of the two.
 const SAME_SHAPE: f64 = 1.5;
+
+/// After so many refits a tree is built anew in any case. Neither rule sees that the triangles now lie so that a tree
+/// could cost less than the old one ever did (loose parts that gather in a row); a build takes about five times as long as
+/// a refit, so that this costs a sixth of the time of refits.
+pub const MAX_REFITS: u32 = 32;
 
 /// Builds the tree of a mesh. `ids[i]` is what a hit on `triangles[i]` reports.
 ///
@@ -69,6 +84,8 @@ pub fn build_mesh(
         triangles: bvh.order.par_iter().enumerate().map(in_slot).collect(),
         order: bvh.order,
         built_cost: sah_cost(&bvh.nodes),
+        built_area: bvh.nodes.first().map_or(0.0, half_area),
+        refits: 0,
         nodes: bvh.nodes,
     })
 }
@@ -127,12 +144,16 @@ impl MeshBvh {
             self.triangles.par_iter().zip(&self.order).map(moved).collect::<Result<_, AccelError>>()?;
         self.refit_boxes();
         self.bounds = root_bounds(&self.nodes);
+        self.refits += 1;
         let floor = |root: &BvhNode| floor_cost(root, self.triangles.iter().map(bounds));
         Ok(Refit {
             cost: sah_cost(&self.nodes),
             floor: self.nodes.first().map_or(0.0, floor),
+            area: self.nodes.first().map_or(0.0, half_area),
             built_cost: self.built_cost,
             built_floor: self.built_floor,
+            built_area: self.built_area,
+            refits: self.refits,
         })
     }
 
@@ -154,11 +175,13 @@ impl MeshBvh {
 }
 
 impl Refit {
-    /// True if a tree built anew would save more than it costs.
+    /// True if a tree built anew would save more than it costs, or nobody knows any more.
     pub fn is_rebuild_due(&self) -> bool {
-        let is_other_shape =
-            self.floor > SAME_SHAPE * self.built_floor || self.built_floor > SAME_SHAPE * self.floor;
-        is_other_shape || self.cost - self.floor > REBUILD_RATIO * (self.built_cost - self.built_floor)
+        let has_changed = |now: f64, built: f64| now > SAME_SHAPE * built || built > SAME_SHAPE * now;
+        let is_other_shape = has_changed(self.floor, self.built_floor)
+            && has_changed(self.floor * self.area, self.built_floor * self.built_area);
+        let is_dearer = self.cost - self.floor > REBUILD_RATIO * (self.built_cost - self.built_floor);
+        is_other_shape || is_dearer || self.refits >= MAX_REFITS
     }
 }
 

@@ -197,6 +197,37 @@ fn e01_trees_that_follow_deformations_cost_little_more_than_fresh_ones() {
 }
 
 #[test]
+fn parts_that_gather_get_a_new_tree_before_long() {
+    // Small cubes in a volume move into a row: what no tree can save and what the nodes cost stay about the same, and a
+    // new tree would cost a fraction.
+    let cubes: Vec<[i32; 3]> = (0..216).map(|n| [n % 6 * 4, n / 6 % 6 * 4, n / 36 * 4]).collect();
+    let mesh = meshes::cubes(cubes);
+    let corners = mesh.positions.len() / 216;
+    let row = |n: usize| Vec3::splat((n / corners) as f32 * 0.1);
+    let start = |n: usize| Vec3::from_array(cubes_place(n / corners));
+    let (mut tree, mut builds, mut last) = (build(&mesh, &BvhOptions::default()), 0, 0.0);
+    let frames = 2 * luxel_accel::MAX_REFITS;
+    for frame in 1..=frames {
+        let share = (frame as f32 / luxel_accel::MAX_REFITS as f32).min(1.0);
+        let moved = |(n, p): (usize, &Vec3)| *p + (row(n) - start(n)) * share;
+        let places: Vec<Vec3> = mesh.positions.iter().enumerate().map(moved).collect();
+        let refit = tree.refit(&places, &mesh.triangles).unwrap();
+        let other = TestMesh { positions: places, triangles: mesh.triangles.clone() };
+        let fresh = build(&other, &BvhOptions::default());
+        last = refit.cost / fresh.built_cost;
+        if refit.is_rebuild_due() {
+            (tree, builds, last) = (fresh, builds + 1, 1.0);
+        }
+    }
+    assert!(builds >= 2 && last < 1.1, "{builds} builds, {last}");
+}
+
+/// Where the cube of a number stands at first.
+fn cubes_place(n: usize) -> [f32; 3] {
+    [n % 6 * 4, n / 6 % 6 * 4, n / 36 * 4].map(|c| c as f32)
+}
+
+#[test]
 fn a_refit_that_fails_changes_nothing() {
     let mesh = meshes::soup(3, 100, 0.2);
     let mut built = build(&mesh, &BvhOptions::default());

@@ -15,9 +15,12 @@ pub(crate) struct MeshTree {
     pub triangles: Span,
     /// Box of the root, in the coordinates of the triangles.
     pub bounds: Aabb<f32>,
-    /// What the tree cost when it was last built, and what of that no tree could have saved.
+    /// What the tree cost when it was last built, what of that no tree could have saved, and half the surface of its box.
     built_cost: f64,
     built_floor: f64,
+    built_area: f64,
+    /// Refits since then.
+    refits: u32,
 }
 
 impl MeshTree {
@@ -33,6 +36,8 @@ impl MeshTree {
             bounds: bvh.bounds,
             built_cost: bvh.built_cost,
             built_floor: bvh.built_floor,
+            built_area: bvh.built_area,
+            refits: bvh.refits,
         })
     }
 
@@ -47,8 +52,8 @@ impl MeshTree {
     ///
     /// `None`, with everything as it was, if the tree should be built: there is none, it has other triangles, a place is
     /// no place (a build then says so), or rays would pay for the old shape: its nodes cost by the surface area heuristic
-    /// more than [`REBUILD_RATIO`](luxel_accel::REBUILD_RATIO) times those of the last build, or that build was over quite
-    /// another shape. The cost is counted in the tree, not timed, so that two runs decide alike.
+    /// more than [`REBUILD_RATIO`](luxel_accel::REBUILD_RATIO) times those of the last build, that build was over quite
+    /// another shape, or it was long ago. The cost is counted in the tree, not timed, so that two runs decide alike.
     pub(crate) fn refitted(
         &self,
         (positions, indices): (&[Vec3], &[[u32; 3]]),
@@ -68,6 +73,8 @@ impl MeshTree {
             bounds: self.bounds,
             built_cost: self.built_cost,
             built_floor: self.built_floor,
+            built_area: self.built_area,
+            refits: self.refits,
         };
         let refit = bvh.refit(positions, indices).ok()?;
         if refit.is_rebuild_due() {
@@ -76,6 +83,6 @@ impl MeshTree {
         bvh.triangles.iter_mut().for_each(mark);
         heaps.bvh_nodes.overwrite(self.nodes, &bvh.nodes, revision);
         heaps.triangles.overwrite(self.triangles, &bvh.triangles, revision);
-        Some(Self { bounds: bvh.bounds, ..*self })
+        Some(Self { bounds: bvh.bounds, refits: bvh.refits, ..*self })
     }
 }

@@ -96,5 +96,7 @@ fn without_tree(triangles: Vec<Triangle>) -> MeshBvh {
         triangles,
         built_cost: 0.0,
         built_floor: 0.0,
+        built_area: 0.0,
+        refits: 0,
     }
 }

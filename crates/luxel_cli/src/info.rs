@@ -8,7 +8,7 @@ use crate::args::InfoArgs;
 use crate::error::{CliError, one_line};
 use crate::reply;
 
-/// The most cameras, and the most scenes, that are listed.
+/// How many cameras and scenes are listed, besides the scenes that matter.
 const MOST_NAMES: usize = 32;
 
 /// Describes a scene.
@@ -29,9 +29,9 @@ pub(crate) fn info(args: &InfoArgs) -> Result<ExitCode, CliError> {
 fn text(info: &SceneInfo) -> String {
     let mut sections = vec![head(info), structures(info), memory(info), features(info)];
     if !info.scenes.is_empty() {
-        sections.push(lines("scenes", &first_few(info.scenes.iter().map(scene))));
+        sections.push(lines("scenes", &scenes(&info.scenes)));
     }
-    sections.push(lines("cameras", &first_few(info.cameras.iter().map(|name| quoted(name)))));
+    sections.push(lines("cameras", &first_few(info.cameras.iter().map(|name| (quoted(name), false)))));
     sections.push(lines("used of the model", &info.used));
     sections.push(lines("ignored", &info.ignored));
     sections.push(lines("dropped", &info.dropped));
@@ -61,15 +61,27 @@ fn counted(count: u64, unit: &str) -> String {
     if count == 1 { format!("1 {unit}") } else { format!("{count} {unit}s") }
 }
 
-/// The first of what can be asked for by number, with their numbers, and how many more there are.
-fn first_few(all: impl ExactSizeIterator<Item = String>) -> Vec<String> {
-    let more = all.len().saturating_sub(MOST_NAMES);
-    let first = all.enumerate().take(MOST_NAMES);
-    let mut lines: Vec<_> = first.map(|(number, said)| format!("{number} {said}")).collect();
+/// The first of what can be asked for by number, and those further on that matter, with their numbers, and how many more
+/// there are.
+fn first_few(all: impl Iterator<Item = (String, bool)>) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut more = 0;
+    for (number, (said, matters)) in all.enumerate() {
+        if number < MOST_NAMES || matters {
+            lines.push(format!("{number} {said}"));
+        } else {
+            more += 1;
+        }
+    }
     if more > 0 {
         lines.push(format!("and {more} more"));
     }
     lines
+}
+
+/// The first scenes, the default one and the one that is shown.
+fn scenes(all: &[SceneEntry]) -> Vec<String> {
+    first_few(all.iter().map(|entry| (scene(entry), entry.is_default || entry.is_shown)))
 }
 
 fn quoted(name: &str) -> String {
@@ -150,4 +162,22 @@ fn lines(title: &str, of: &[String]) -> String {
 /// Adds a line; a `String` takes all that it is given.
 fn put(text: &mut String, line: std::fmt::Arguments<'_>) {
     _ = writeln!(text, "{line}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_scene_and_the_shown_one_are_listed_however_many_there_are() {
+        let listed = |count, default, shown| {
+            let entry = |at| SceneEntry { name: None, is_default: at == default, is_shown: at == shown };
+            scenes(&(0..count).map(entry).collect::<Vec<_>>())
+        };
+        let lines = listed(100, 99, 40);
+        assert_eq!(lines[31..], ["31 ''", "40 '' (shown)", "99 '' (default)", "and 66 more"]);
+        assert_eq!(listed(34, 33, 33)[32..], ["33 '' (default, shown)", "and 1 more"]);
+        assert_eq!(listed(33, 32, 0)[32..], ["32 '' (default)"]);
+        assert_eq!(listed(32, 1, 1)[1..2], ["1 '' (default, shown)"]);
+    }
 }

@@ -41,6 +41,7 @@ mod ids;
 mod import;
 mod lights;
 mod limits;
+mod load;
 mod material;
 mod mesh_structure;
 mod options;
@@ -50,7 +51,6 @@ mod resources;
 mod sphere_cloud;
 mod textures;
 
-use std::fs;
 use std::path::Path;
 
 use bevy_ecs::prelude::World;
@@ -66,6 +66,7 @@ pub use components::{
 pub use error::SceneError;
 pub use ids::{StableId, StableIds, spawn};
 pub use lights::{DistantLight, PointLight, SpotLight};
+pub use load::{load, load_with};
 pub use material::{Material, Opacity, Principled, Surface, Volume};
 pub use mesh_structure::{
     MAX_MESH_BINS, MAX_MESH_LEAF_SIZE, MeshAccel, MeshLevels, MeshQuality, MeshSplit, MeshStructure,
@@ -86,50 +87,6 @@ pub fn empty_world() -> World {
     world.init_resource::<SphereCloud>();
     world.init_resource::<MeshStructure>();
     world
-}
-
-/// Fills `world`, which must hold no scene yet, from a scene file (.ron) or a model (.gltf, .glb, .obj, .ply, .vox).
-///
-/// A model gets what it lacks of a ground, a sky, a lamp and a camera that shows all of it. Elements of a model
-/// that cannot be drawn are left out and reported.
-///
-/// # Errors
-/// One message with the file and the place in it; then `world` is as it was.
-pub fn load(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
-    load_with(path, world, &LoadOptions::default())
-}
-
-/// The same, with a say in what is loaded.
-///
-/// # Errors
-/// As [`load`]; and a scene that the model has not, or an environment that is no image.
-pub fn load_with(path: &Path, world: &mut World, options: &LoadOptions) -> Result<LoadReport, SceneError> {
-    let metadata = fs::metadata(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
-    if !metadata.is_file() {
-        return Err(SceneError::NotAFile { path: path.to_owned() });
-    }
-    let environment = options.environment.as_deref().map(environment_image).transpose()?;
-    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-    let mut report = match ending.to_str() {
-        Some("ron") => file::load_scene(path, world),
-        Some("gltf" | "glb") => import::load_gltf_scene(path, world, options),
-        Some("obj") => import::load_obj_scene(path, world, options),
-        Some("ply") => import::load_ply_scene(path, world, options),
-        Some("vox") => import::load_vox_scene(path, world, options),
-        _ => Err(SceneError::UnknownKind { path: path.to_owned() }),
-    }?;
-    if let Some((image, warning)) = environment {
-        let image = world.get_resource_or_init::<Assets>().insert_image(image);
-        world.insert_resource(Environment::Map { image, rotation: 0.0, strength: 1.0 });
-        report.warnings.extend(warning);
-    }
-    Ok(report.readable())
-}
-
-fn environment_image(path: &Path) -> Result<(ImageAsset, Option<String>), SceneError> {
-    let absolute = import::canonical(path)?;
-    let decoded = import::read_image(&absolute).map_err(|error| error.renamed(path))?;
-    Ok(decoded.into_asset(ImageSource::File(absolute), &import::file_name(path)))
 }
 
 /// Writes the scene of `world` to `path`, at once or not at all. Entities without a [`StableId`] are

@@ -169,6 +169,6 @@ fn pictures_too_large_to_be_mixed_are_refused_by_their_headers() {
     );
     assert_eq!(report.warnings.len(), 1, "{report:?}");
     let (_, report) = load_with_materials(folder.path(), "newmtl m\nbump much.tga\n");
-    let expected = "needs 257 MiB, and 256 MiB are left for it";
+    let expected = "is too large to make another picture of: it needs 257 MiB, and 256 MiB are the most";
     assert!(report.warnings.iter().any(|line| line.contains(expected)), "{report:?}");
 }

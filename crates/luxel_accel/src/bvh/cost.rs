@@ -23,7 +23,7 @@ pub(crate) fn floor_cost(root: &BvhNode, boxes: impl Iterator<Item = Aabb<f32>>)
 }
 
 /// Half the surface of a node's box, in numbers that do not overflow.
-pub(super) fn half_area(node: &BvhNode) -> f64 {
+pub(crate) fn half_area(node: &BvhNode) -> f64 {
     half_area_between(node.lo, node.hi)
 }
 

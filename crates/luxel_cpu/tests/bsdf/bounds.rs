@@ -75,11 +75,19 @@ impl<'a> Seen<'a> {
         lookup::mean_reflectance(&TABLES, cos, self.roughness, self.eta)
     }
 
-    /// Least share of the exact reflectance, and of what passes it, in a tinted one's: see `fresnel::Dielectric`.
-    fn exact(&self) -> f64 {
-        let f0 = schlick::eta_to_f0(self.eta);
-        let share = |tint: f64| if tint > 1.0 { ((1.0 - tint * f0) / (1.0 - f0)).max(0.0) } else { tint };
-        self.record.specular_color.into_iter().map(|tint| share(tint.into())).fold(1.0, f64::min)
+    /// Shares of the exact reflectance and of Schlick's weight in the tinted reflectance of a channel: see
+    /// `fresnel::Dielectric`.
+    fn shares(&self, channel: usize) -> [f64; 2] {
+        let (f0, tint) = (schlick::eta_to_f0(self.eta), f64::from(self.record.specular_color[channel]));
+        if tint > 1.0 { [((1.0 - tint * f0) / (1.0 - f0)).max(0.0), 0.0] } else { [tint, 1.0 - tint] }
+    }
+
+    /// What passes the dielectric in a channel: of `kept` light its microfacets let `passing` through if they reflect
+    /// exactly, and reflect `rim` by Schlick's weight.
+    fn let_through(&self, channel: usize, [kept, passing, rim]: [f64; 3]) -> f64 {
+        let [exact, by_rim] = self.shares(channel);
+        let lost = 1.0 - kept + exact * passing + by_rim * (kept - rim);
+        1.0 - self.strength() * (1.0 - lost)
     }
 
     fn strength(&self) -> f64 {
@@ -116,30 +124,42 @@ impl<'a> Seen<'a> {
         if carried > 0.0 { self.tint * largest / carried } else { 0.0 }
     }
 
-    /// Least share that what lies over the diffuse base lets through.
-    fn passing(&self, cos: f64) -> f64 {
-        let kept = self.kept(cos);
-        let passing = 1.0 - kept + self.exact() * kept * (1.0 - self.reflectance(cos));
-        1.0 - self.strength() * (1.0 - passing)
-    }
-
     /// The diffuse base gets what passes on the way in; on the way out it is divided by the mean of that.
     fn diffuse(&self) -> f64 {
         if self.clear == self.dielectric {
             return 0.0;
         }
+        let quotient = |channel| match self.mean_let_through(channel) {
+            0.0 => 0.0,
+            mean => self.tint / mean,
+        };
+        (0..3).map(quotient).fold(0.0, f64::max)
+    }
+
+    fn mean_let_through(&self, channel: usize) -> f64 {
+        let r = self.roughness;
         if self.record.clearcoat == 0.0 && self.eta >= 1.0 {
-            let loss = lookup::conductor_loss_average::<f64>(&TABLES, self.roughness);
-            let passing = lookup::coat_passing_average(&TABLES, self.roughness, self.eta);
-            let loss = if self.is_smooth { 0.0 } else { loss };
-            return self.tint / (1.0 - self.strength() * (1.0 - loss - self.exact() * passing));
+            let loss = lookup::conductor_loss_average::<f64>(&TABLES, r);
+            let kept = if self.is_smooth { 1.0 } else { 1.0 - loss };
+            let passing = lookup::coat_passing_average(&TABLES, r, self.eta);
+            return self.let_through(channel, [kept, passing, lookup::rim_albedo_average(&TABLES, r)]);
         }
-        let under =
-            |cos: f64| self.passing(cos) * (1.0 - f64::from(self.record.clearcoat) * self.coat_albedo(cos));
-        let sum: f64 =
-            cosines().map(|cos| cos - 0.5 / f64::from(STEPS)).map(|cos| 2.0 * cos * under(cos)).sum();
+        let under = |cos: f64| {
+            let kept = self.kept(cos);
+            let outer = if self.eta < 1.0 { optics::fresnel_dielectric(cos, self.eta).cos_t } else { cos };
+            let is_level = self.is_smooth || self.eta < 1.0;
+            let rim = if is_level {
+                kept * schlick::schlick_weight(outer)
+            } else {
+                lookup::rim_albedo(&TABLES, cos, r)
+            };
+            let base = self.let_through(channel, [kept, kept * (1.0 - self.reflectance(cos)), rim]);
+            base * (1.0 - f64::from(self.record.clearcoat) * self.coat_albedo(cos))
+        };
+        let middles = cosines().map(|cos| cos - 0.5 / f64::from(STEPS));
+        let sum: f64 = middles.map(|cos| 2.0 * cos * under(cos)).sum();
         // A rule of few points is not exact either.
-        self.tint * SLACK / (sum / f64::from(STEPS))
+        sum / f64::from(STEPS) / SLACK
     }
 
     /// Light that single scattering loses comes back in proportion to what it loses there.

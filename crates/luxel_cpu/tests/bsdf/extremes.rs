@@ -10,6 +10,20 @@ use crate::closures::{layered, lossless, sample};
 
 const ENDS: [f32; 5] =
     [0.0, 1.0 / (1 << 24) as f32, 0.5, 1.0 - 2.0 / (1 << 24) as f32, 1.0 - 1.0 / (1 << 24) as f32];
+/// No more than this, whatever follows from how lobes are chosen: under the most level view the roughest dielectric mirrors
+/// a fourteenth of the light, but all of that which is level too.
+const MOST: f32 = 14.0;
+/// Opaque dielectrics for which only the bound that follows holds: where hardly anything passes to the diffuse base, the
+/// little that does comes out in the few directions that let it; and a tint, or an index near 1, leaves a rough surface
+/// less to mirror under a level view than that fourteenth.
+const ONLY_DERIVED: [&str; 5] = [
+    "infinite index",
+    "stronger reflection",
+    "tinted reflection",
+    "tinted reflection of index 10",
+    "index 1.05",
+];
+
 fn places() -> Vec<Geometry<f32>> {
     let mut places = Vec::new();
     for cos in [0.0f32, 1e-7, 1e-4, 0.1, 1.0] {
@@ -45,6 +59,7 @@ fn every_sample_is_a_number_or_refused() {
         for (name, record) in lossless(roughness).into_iter().chain(layered(roughness)) {
             for geometry in places() {
                 let most = most(&record, geometry.wo.dot(geometry.normal).abs(), geometry.front);
+                let most = if ONLY_DERIVED.contains(&name) { most } else { most.min(MOST) };
                 for u0 in ENDS {
                     for u1 in ENDS {
                         for u2 in ENDS.into_iter().chain([0.03, 0.1, 0.3, 0.7, 0.9]) {

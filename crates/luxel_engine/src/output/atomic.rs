@@ -1,6 +1,7 @@
 //! Writing beside a file's place and moving it there.
 use std::fs::{self, File};
-use std::path::{Path, PathBuf};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf, is_separator};
 
 use tempfile::{Builder, NamedTempFile};
 
@@ -37,6 +38,12 @@ fn beside(path: &Path) -> Result<(NamedTempFile, PathBuf), OutputError> {
             return Err(OutputError::NotAFile { path: path_buf(), what: "device" });
         }
         Ok(_) => fs::canonicalize(path).map_err(|source| OutputError::Io { path: path_buf(), source })?,
+        Err(_) if names_a_folder(path) => {
+            return Err(OutputError::NotAFile { path: path_buf(), what: "folder's name" });
+        }
+        Err(source) if source.kind() == ErrorKind::InvalidFilename => {
+            return Err(OutputError::Io { path: path_buf(), source });
+        }
         Err(_) => path_buf(),
     };
     let folder = match target.parent() {
@@ -48,6 +55,13 @@ fn beside(path: &Path) -> Result<(NamedTempFile, PathBuf), OutputError> {
     }
     let file = new_file(folder).map_err(|source| OutputError::Io { path: path_buf(), source })?;
     Ok((file, target))
+}
+
+/// Whether `path` can be no file's: `a.png/` and `a.png/.`, whose parts are those of `a.png`.
+fn names_a_folder(path: &Path) -> bool {
+    let bytes = path.as_os_str().as_encoded_bytes();
+    let last = bytes.strip_suffix(b".").unwrap_or(bytes).last();
+    last.is_some_and(|&byte| is_separator(char::from(byte)))
 }
 
 /// A file that others may read as far as the user's umask allows; temporary files are private by default.
@@ -113,6 +127,20 @@ mod tests {
         write(&under_a_file, "").unwrap();
         assert!(matches!(check(&under_a_file.join("a.png")), Err(OutputError::NoFolder { .. })));
         assert_eq!(names(folder.path()), ["file"]);
+    }
+
+    #[test]
+    fn a_name_that_no_file_can_have_is_found_by_checking() {
+        let folder = tempfile::tempdir().unwrap();
+        write(&folder.path().join("there.png"), "").unwrap();
+        for name in ["a.png/", "a.png//", "a.png/.", "there.png/", "there.png/./"] {
+            let error = check(&folder.path().join(name)).unwrap_err();
+            assert!(error.is_input() && error.to_string().contains("a folder's name, not a file"), "{error}");
+        }
+        let error = check(&folder.path().join("a".repeat(300) + ".png")).unwrap_err();
+        assert!(error.is_input(), "{error}");
+        assert_eq!(names(folder.path()), ["there.png"]);
+        check(&folder.path().join("./a.png.")).unwrap();
     }
 
     #[test]

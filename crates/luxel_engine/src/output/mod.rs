@@ -10,6 +10,7 @@ mod metadata;
 mod picture;
 mod png_file;
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -66,7 +67,11 @@ pub enum OutputError {
 impl OutputError {
     /// True if the path that was given is at fault, rather than the machine or the film.
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::UnknownFormat { .. } | Self::NotAFile { .. } | Self::NoFolder { .. })
+        match self {
+            Self::UnknownFormat { .. } | Self::NotAFile { .. } | Self::NoFolder { .. } => true,
+            Self::Io { source, .. } => source.kind() == ErrorKind::InvalidFilename,
+            Self::Encode { .. } => false,
+        }
     }
 }
 

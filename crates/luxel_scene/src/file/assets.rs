@@ -160,4 +160,23 @@ mod tests {
         assert!(load(&[masked, IMAGES[1], IMAGES[2]], 8 << 10).is_err());
         assert!(load(&[masked], (8 << 10) - 1).unwrap_err().contains("a.png: is one too many"));
     }
+
+    #[test]
+    fn a_picture_too_large_to_be_mixed_is_told_of_that_limit() {
+        let folder = tempfile::tempdir().unwrap();
+        // A TGA's header without a picture: 16384 x 8192 pixels of 24 bits.
+        let header = [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 64, 0, 32, 24, 0];
+        std::fs::write(folder.path().join("big.tga"), header).unwrap();
+        for source in [ImageSource::Bumps("big.tga".into()), masked_by("big.tga")] {
+            let mut source = source;
+            source.paths_mut().for_each(|path| *path = folder.path().join(&*path));
+            let message = Models::default().image(source).unwrap_err().to_string();
+            let expected = "big.tga: is too large to make another picture of: it needs 512 MiB, and 256 MiB are the most";
+            assert!(message.ends_with(expected), "{message}");
+        }
+    }
+
+    fn masked_by(mask: &str) -> ImageSource {
+        ImageSource::Masked { color: None, mask: mask.into() }
+    }
 }

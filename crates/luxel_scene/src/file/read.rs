@@ -10,7 +10,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::SceneError;
-use crate::import::{Models, read_file};
+use crate::import::{ImageBudget, Models, read_file};
 use crate::report::LoadReport;
 
 use super::assets::load_assets;
@@ -25,12 +25,17 @@ const MAX_SCENE_BYTES: u64 = 1 << 30;
 /// What some editors begin a UTF-8 file with.
 const BYTE_ORDER_MARK: &[u8] = "\u{FEFF}".as_bytes();
 
-/// Reads the scene file at `path` into `world`, which is untouched unless all went well.
-pub(crate) fn load_scene(path: &Path, world: &mut World) -> Result<LoadReport, SceneError> {
+/// Reads the scene file at `path`, with so much left for its images, into `world`, which is untouched unless all went
+/// well.
+pub(crate) fn load_scene(
+    path: &Path,
+    world: &mut World,
+    budget: ImageBudget,
+) -> Result<LoadReport, SceneError> {
     let bytes = read_file(path, MAX_SCENE_BYTES)?;
     let mut file = parse(path, bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&bytes))?;
     let next_id = check(&mut file).map_err(|(place, flaw)| invalid(path, place, flaw))?;
-    let (assets, report) = load_assets(path, &file, Models::default())?;
+    let (assets, report) = load_assets(path, &file, Models::with_budget(budget))?;
     fill(world, &file, next_id, assets);
     Ok(report)
 }

@@ -8,8 +8,7 @@ use crate::error::SceneError;
 use crate::report::LoadReport;
 
 use super::budget::ImageBudget;
-use super::derived::MAX_INPUT_BYTES;
-use super::image::{checker, checker_bytes, read_image_within};
+use super::image::{checker, checker_bytes, read_image};
 use super::ply::PlyFile;
 use super::{GltfFile, ObjFile, derived, file_name};
 
@@ -25,7 +24,6 @@ pub(crate) struct Models {
 
 impl Models {
     /// None read yet, and so much left for images.
-    #[cfg(test)]
     pub(crate) fn with_budget(budget: ImageBudget) -> Self {
         Self { budget, ..Self::default() }
     }
@@ -82,8 +80,7 @@ impl Models {
         }
         .to_owned();
         let (asset, warning) = self.made(source, &path)?;
-        let left = self.budget.after(asset.pixels.bytes());
-        self.budget = left.map_err(|reason| SceneError::unusable(&path, reason))?;
+        self.budget = self.budget.without(asset.pixels.bytes());
         self.report.warnings.extend(warning);
         Ok(asset)
     }
@@ -91,23 +88,25 @@ impl Models {
     /// Makes an image; `path` is what messages call it.
     fn made(&mut self, source: ImageSource, path: &Path) -> Result<(ImageAsset, Option<String>), SceneError> {
         let unusable = |reason: String| SceneError::unusable(path, reason);
-        let left = self.budget.left();
+        let budget = self.budget;
         let decoded = match &source {
-            ImageSource::File(path) => read_image_within(path, left)?,
+            ImageSource::File(path) => read_image(path, budget.image())?,
             ImageSource::Masked { color, mask } => {
-                let mask = read_image_within(mask, left.min(MAX_INPUT_BYTES))?;
+                let mask = read_image(mask, budget.input())?;
                 // Both are in memory at once.
-                let left = left.saturating_sub(mask.bytes()).min(MAX_INPUT_BYTES);
-                let colors = color.as_deref().map(|color| read_image_within(color, left)).transpose()?;
+                let room = budget.without(mask.bytes()).input();
+                let colors = color.as_deref().map(|color| read_image(color, room)).transpose()?;
                 derived::masked(colors, mask).map_err(unusable)?
             }
             ImageSource::Bumps(path) => {
-                let heights = read_image_within(path, left.min(MAX_INPUT_BYTES))?;
+                let heights = read_image(path, budget.input())?;
                 derived::normals(heights).map_err(unusable)?
             }
-            ImageSource::ModelImage(path, number) => return self.gltf(path)?.image_asset(*number, left),
+            ImageSource::ModelImage(path, number) => {
+                return self.gltf(path)?.image_asset(*number, budget.image());
+            }
             ImageSource::Checker { squares, a, b } => {
-                self.budget.after(checker_bytes(*squares)).map_err(unusable)?;
+                budget.image().check(checker_bytes(*squares)).map_err(unusable)?;
                 checker(*squares, *a, *b)
             }
         };

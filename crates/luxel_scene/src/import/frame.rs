@@ -18,6 +18,7 @@ use crate::options::LoadOptions;
 use crate::report::LoadReport;
 use crate::resources::{Environment, RenderSettings};
 
+use super::budget::ImageBudget;
 use super::obj_images::ObjImages;
 use super::ply::PlyFile;
 use super::{ObjFile, VoxFile, canonical};
@@ -100,11 +101,12 @@ impl Bounds {
 }
 
 /// Fills `world` with an .obj model on a ground: a root entity, and below it one entity for every
-/// (object, material).
+/// (object, material). Images that `budget` has no room for are left out.
 pub(crate) fn load_obj_scene(
     path: &Path,
     world: &mut World,
     options: &LoadOptions,
+    budget: ImageBudget,
 ) -> Result<LoadReport, SceneError> {
     let typed = path;
     let path = &canonical(typed)?;
@@ -123,7 +125,7 @@ pub(crate) fn load_obj_scene(
         ignored: file.ignored,
         warnings: file.warnings,
     };
-    let mut images = ObjImages::new(path);
+    let mut images = ObjImages::new(path, budget);
     let root = spawn(world, (model_name(path), Transform::default()));
     for (index, part) in (0..).zip(file.parts) {
         let mut assets = world.get_resource_or_init::<Assets>();

@@ -8,7 +8,7 @@ use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageFormat, Imag
 use crate::assets::{ImageAsset, ImagePixels, ImageSource};
 use crate::error::SceneError;
 
-use super::budget::one_too_many;
+use super::budget::Room;
 use super::guard::guarded;
 use super::read_model;
 
@@ -45,30 +45,22 @@ impl Decoded {
     }
 }
 
-/// The image file at `path`.
+/// The image file at `path`, if its pixels fit into `room`.
 ///
 /// # Errors
 /// A file that cannot be read, is none of the formats, is damaged, or is too large.
-pub(crate) fn read_image(path: &Path) -> Result<Decoded, SceneError> {
-    read_image_within(path, MAX_IMAGE_BYTES)
-}
-
-/// The same, if its pixels fill at most `limit` bytes.
-///
-/// # Errors
-/// As [`read_image`].
-pub(super) fn read_image_within(path: &Path, limit: u64) -> Result<Decoded, SceneError> {
+pub(crate) fn read_image(path: &Path, room: Room) -> Result<Decoded, SceneError> {
     let bytes = read_model(path)?;
     let by_name = ImageFormat::from_path(path).ok();
-    guarded(path, || decode(&bytes, by_name, limit).map_err(|message| SceneError::unusable(path, message)))
+    guarded(path, || decode(&bytes, by_name, room).map_err(|message| SceneError::unusable(path, message)))
 }
 
-/// An image whose bytes are at hand; `by_name` is asked where they do not say what they are (TGA). One that would fill
-/// more than `limit` bytes is refused by its header: nothing is decoded or allocated for it.
+/// An image whose bytes are at hand; `by_name` is asked where they do not say what they are (TGA). One that would not
+/// fit into `room` is refused by its header: nothing is decoded or allocated for it.
 ///
 /// # Errors
 /// What is wrong, as the end of a sentence that begins with the image's name.
-pub(super) fn decode(bytes: &[u8], by_name: Option<ImageFormat>, limit: u64) -> Result<Decoded, String> {
+pub(super) fn decode(bytes: &[u8], by_name: Option<ImageFormat>, room: Room) -> Result<Decoded, String> {
     let Some(format) = image::guess_format(bytes).ok().or(by_name) else {
         return Err("is no PNG, JPEG, BMP, TGA, HDR or EXR image".to_owned());
     };
@@ -79,14 +71,14 @@ pub(super) fn decode(bytes: &[u8], by_name: Option<ImageFormat>, limit: u64) -> 
     limits.max_alloc = Some(MAX_DECODER_BYTES);
     reader.limits(limits.clone());
     let mut decoder = reader.into_decoder().map_err(|error| explain(&error))?;
-    check_size(&decoder, limit)?;
+    check_size(&decoder, room)?;
     limits.reserve(decoder.total_bytes()).map_err(|error| explain(&error))?;
     decoder.set_limits(limits).map_err(|error| explain(&error))?;
     pixels(decoder).map_err(|error| explain(&error))
 }
 
 /// Whether there are pixels, and not too many.
-fn check_size(decoder: &impl ImageDecoder, limit: u64) -> Result<(), String> {
+fn check_size(decoder: &impl ImageDecoder, room: Room) -> Result<(), String> {
     let (width, height) = decoder.dimensions();
     if width == 0 || height == 0 {
         return Err("has no pixel".to_owned());
@@ -96,10 +88,7 @@ fn check_size(decoder: &impl ImageDecoder, limit: u64) -> Result<(), String> {
     if bytes > MAX_IMAGE_BYTES {
         return Err(too_large());
     }
-    if bytes > limit {
-        return Err(one_too_many(bytes, limit));
-    }
-    Ok(())
+    room.check(bytes)
 }
 
 fn is_radiance(color: ColorType) -> bool {

@@ -34,8 +34,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::SceneError;
 
-#[cfg(test)]
-pub(crate) use budget::ImageBudget;
+pub(crate) use budget::{ImageBudget, Room};
 pub(crate) use cache::Models;
 pub(crate) use frame::{load_obj_scene, load_ply_scene, load_vox_scene};
 pub(crate) use gltf::{GltfFile, load_gltf_scene};

@@ -7,10 +7,9 @@ use crate::assets::{AssetId, Assets, ImagePixels, ImageSource};
 use crate::report::LoadReport;
 use crate::textures::{MaterialTextures, TextureRef};
 
-use super::budget::ImageBudget;
+use super::budget::{ImageBudget, Room};
 use super::confined::confined;
-use super::derived::MAX_INPUT_BYTES;
-use super::image::{Decoded, MAX_IMAGE_BYTES, read_image_within};
+use super::image::{Decoded, read_image};
 use super::mtl_look::{Map, Role};
 use super::{counted, derived, file_name, one_line};
 
@@ -38,11 +37,11 @@ struct Image {
 }
 
 impl<'a> ObjImages<'a> {
-    /// None yet of those of the file at `model`.
-    pub(super) fn new(model: &'a Path) -> Self {
+    /// None yet of those of the file at `model`, and so much left for them.
+    pub(super) fn new(model: &'a Path, budget: ImageBudget) -> Self {
         Self {
             model,
-            budget: ImageBudget::default(),
+            budget,
             made: HashMap::new(),
             told: HashSet::new(),
             unusable: HashSet::new(),
@@ -93,7 +92,7 @@ impl<'a> ObjImages<'a> {
         let image = match self.made.get(&source) {
             Some(known) => *known,
             None => {
-                let picture = self.picture(map, &path, MAX_IMAGE_BYTES);
+                let picture = self.picture(map, &path, self.budget.image());
                 self.keep(map, source, picture, assets)
             }
         };
@@ -130,10 +129,10 @@ impl<'a> ObjImages<'a> {
         (map, mask): (&Map, PathBuf),
         assets: &mut Assets,
     ) -> Option<Image> {
-        let opacity = self.picture(map, &mask, MAX_INPUT_BYTES)?;
+        let opacity = self.picture(map, &mask, self.budget.input())?;
         // Both are in memory at once.
-        let left = self.budget.left().saturating_sub(opacity.bytes()).min(MAX_INPUT_BYTES);
-        let colors = color.and_then(|(map, path)| Some((self.picture(map, path, left)?, path.clone())));
+        let room = self.budget.without(opacity.bytes()).input();
+        let colors = color.and_then(|(map, path)| Some((self.picture(map, path, room)?, path.clone())));
         let (colors, color) = colors.unzip();
         let picture = self.or_tell(map, derived::masked(colors, opacity));
         self.keep(map, ImageSource::Masked { color, mask }, picture, assets)
@@ -147,7 +146,7 @@ impl<'a> ObjImages<'a> {
         let image = match self.made.get(&heights) {
             Some(known) => *known,
             None if colored.is_some() => colored,
-            None => match self.picture(map, &path, MAX_INPUT_BYTES) {
+            None => match self.picture(map, &path, self.budget.input()) {
                 Some(picture) if is_colored(&picture) => self.keep(map, file, Some(picture), assets),
                 picture => {
                     let normals = picture.and_then(|it| self.or_tell(map, derived::normals(it)));
@@ -163,13 +162,13 @@ impl<'a> ObjImages<'a> {
         self.or_tell(map, path)
     }
 
-    /// The picture in a file, if it fills at most `limit` bytes and fits into what is left for all.
-    fn picture(&mut self, map: &Map, path: &Path, limit: u64) -> Option<Decoded> {
-        let attempt = (path.to_owned(), limit.min(self.budget.left()));
+    /// The picture in a file, if it fits into `room`.
+    fn picture(&mut self, map: &Map, path: &Path, room: Room) -> Option<Decoded> {
+        let attempt = (path.to_owned(), room.bytes());
         if self.unusable.contains(&attempt) {
             return None;
         }
-        let picture = read_image_within(path, attempt.1);
+        let picture = read_image(path, room);
         if picture.is_err() {
             self.unusable.insert(attempt);
         }
@@ -184,13 +183,12 @@ impl<'a> ObjImages<'a> {
         picture: Option<Decoded>,
         assets: &mut Assets,
     ) -> Option<Image> {
-        let image = picture.and_then(|picture| {
-            let left = self.budget.after(picture.bytes());
-            self.budget = self.or_tell(map, left)?;
+        let image = picture.map(|picture| {
+            self.budget = self.budget.without(picture.bytes());
             let is_colored = is_colored(&picture);
             let (asset, warning) = picture.into_asset(source.clone(), &map.file);
             self.warnings.extend(warning);
-            Some(Image { id: assets.insert_image(asset), is_colored })
+            Image { id: assets.insert_image(asset), is_colored }
         });
         self.made.insert(source, image);
         image

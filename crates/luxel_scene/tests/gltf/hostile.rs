@@ -104,6 +104,45 @@ fn indices_and_types_are_checked() {
 }
 
 #[test]
+fn what_leads_nowhere_is_said_once_with_its_count() {
+    let mut file = model();
+    let light = json!({"KHR_lights_punctual": {"light": 5}});
+    file["nodes"] =
+        json!([{"mesh": 0, "camera": 9, "skin": 9, "extensions": light}, {"camera": 8, "mesh": 0}]);
+    file["scenes"][0]["nodes"] = json!([0, 1]);
+    file["textures"] = json!([{"source": 0, "sampler": 3}]);
+    file["images"] = json!([{"uri": "none.png"}]);
+    file["materials"] = json!([{"emissiveTexture": {"index": 0}, "normalTexture": {"index": 4}}]);
+    let primitive = file["meshes"][0]["primitives"][0].clone();
+    file["meshes"][0]["primitives"] = Value::Array(vec![primitive; 4]);
+    for (primitive, material) in [7, 7, 8, 0].into_iter().enumerate() {
+        file["meshes"][0]["primitives"][primitive]["material"] = json!(material);
+    }
+    let (mut world, report) = load_model(&file).unwrap();
+    assert_eq!(
+        report.ignored,
+        [
+            "cameras that do not exist (2)",
+            "lights that do not exist (1)",
+            "materials that do not exist (3)",
+            "skins that do not exist (1)",
+            "textures that do not exist (1)",
+        ]
+    );
+    assert!(report.used.contains(&"1 material".to_owned()), "those that exist: {:?}", report.used);
+    // Nor is a node called after a camera that it has not.
+    assert!(world.query::<&Name>().iter(&world).all(|name| !name.0.starts_with("camera ")));
+    file["textures"][0]["source"] = json!(1);
+    file["images"] = json!([{"uri": "none.png"}, {"uri": PIXEL}]);
+    let (_, report) = load_model(&file).unwrap();
+    assert!(report.ignored.contains(&"samplers that do not exist (1)".to_owned()), "{report:?}");
+}
+
+/// A picture of one pixel.
+const PIXEL: &str = "data:image/png;base64,\
+    iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
+
+#[test]
 fn bad_numbers_cost_their_triangles_only() {
     let mut bytes = buffer();
     bytes[0..4].copy_from_slice(&f32::NAN.to_le_bytes());
@@ -189,7 +228,7 @@ fn a_small_file_cannot_make_millions_of_entities() {
 }
 
 #[test]
-fn images_too_large_together_are_refused_by_their_headers() {
+fn an_image_too_large_by_its_header_is_left_out() {
     let folder = tempfile::tempdir().unwrap();
     // Nothing but headers: who decodes one finds it damaged.
     fs::write(folder.path().join("whole.png"), png_header(16384, 8192)).unwrap();

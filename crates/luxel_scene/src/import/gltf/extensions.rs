@@ -49,6 +49,14 @@ impl Ignored {
         }
     }
 
+    /// What an index of the file leads to; one more of those that do not exist if that is nothing.
+    pub(super) fn existing<T>(&mut self, found: Option<T>, plural: &str) -> Option<T> {
+        if found.is_none() {
+            self.add(&format!("{plural} that do not exist"), "");
+        }
+        found
+    }
+
     /// An extension that something has: ignored unless understood.
     pub(super) fn extension(&mut self, name: &str, unit: &'static str) {
         if !KNOWN.contains(&name) {

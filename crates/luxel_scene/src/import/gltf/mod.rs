@@ -35,6 +35,7 @@ use crate::error::SceneError;
 use self::buffers::Buffers;
 use self::extensions::Ignored;
 use self::meshes::{Budget, Shape};
+use super::budget::Room;
 use super::guard::guarded;
 use super::read_model;
 use super::{counted, file_name};
@@ -79,17 +80,17 @@ impl GltfFile {
         Ok(self.asset(mesh, primitive, shape.mesh, shape.dropped))
     }
 
-    /// One image of at most `limit` bytes.
+    /// One image, if it fits into `room`.
     ///
     /// # Errors
     /// There is none, it cannot be decoded, or it is larger.
     pub(crate) fn image_asset(
         &self,
         number: u32,
-        limit: u64,
+        room: Room,
     ) -> Result<(ImageAsset, Option<String>), SceneError> {
         guarded(&self.path, || {
-            let decoded = textures::decode_image(&self.path, &self.root, &self.buffers, number, limit);
+            let decoded = textures::decode_image(&self.path, &self.root, &self.buffers, number, room);
             decoded.map_err(|reason| SceneError::unusable(&self.path, reason))
         })
     }

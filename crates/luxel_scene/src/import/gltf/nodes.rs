@@ -102,6 +102,9 @@ fn placement(
     if let Some(extensions) = &node.extensions {
         extensions.others.keys().for_each(|name| ignored.extension(name, "node"));
     }
+    if let Some(skin) = node.skin {
+        ignored.existing(root.get(skin), "skins");
+    }
     let global = DAffine3::IDENTITY;
     Ok(Placed { node: number, parent: None, transform, is_visible, global, instances })
 }

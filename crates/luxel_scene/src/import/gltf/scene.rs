@@ -6,6 +6,8 @@ use std::path::Path;
 use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::{Entity, World};
 use glam::{DAffine3, DVec3};
+use gltf::json::Index;
+use gltf::json::extensions::scene::khr_lights_punctual::Light as GltfLight;
 use gltf::json::scene::Node;
 
 use crate::assets::{AssetId, Assets, Dropped};
@@ -15,6 +17,7 @@ use crate::ids::spawn;
 use crate::options::LoadOptions;
 use crate::report::LoadReport;
 
+use super::super::budget::ImageBudget;
 use super::super::canonical;
 use super::super::frame::{Bounds, Stage, model_name, set_the_stage};
 use super::super::guard::guarded;
@@ -26,16 +29,18 @@ use super::scenes::choose;
 use super::textures::Images;
 use super::{GltfFile, counted};
 
-/// Fills `world` with one scene of a glTF file, on a stage for what it lacks.
+/// Fills `world` with one scene of a glTF file, on a stage for what it lacks. Images that `budget` has no room for are
+/// left out.
 pub(crate) fn load_gltf_scene(
     typed: &Path,
     world: &mut World,
     options: &LoadOptions,
+    budget: ImageBudget,
 ) -> Result<LoadReport, SceneError> {
     let path = &canonical(typed)?;
     let model = guarded(typed, || {
         let file = GltfFile::read(path).map_err(|error| error.renamed(typed))?;
-        Model::read(file, options).map_err(|error| error.renamed(typed))
+        Model::read(file, options, budget).map_err(|error| error.renamed(typed))
     })?;
     if let Some(bounds) = model.bounds {
         bounds.check(typed)?;
@@ -69,7 +74,7 @@ struct Model {
 }
 
 impl Model {
-    fn read(mut file: GltfFile, options: &LoadOptions) -> Result<Self, SceneError> {
+    fn read(mut file: GltfFile, options: &LoadOptions, budget: ImageBudget) -> Result<Self, SceneError> {
         let mut ignored = Ignored::default();
         let scene = choose(&file, options)?;
         let placed = place(&file.root, &file.buffers, &scene.roots, &mut ignored)
@@ -91,7 +96,7 @@ impl Model {
             has_lights: false,
             report: LoadReport { scenes: scene.all, ..LoadReport::default() },
         };
-        model.read_meshes(&mut file, &mut ignored, scene.called)?;
+        model.read_meshes(&mut file, &mut ignored, scene.called, budget)?;
         model.has_lights = model.lights.iter().any(Option::is_some) || model.shines();
         model.bounds = model.measure();
         Ok(model)
@@ -103,6 +108,7 @@ impl Model {
         file: &mut GltfFile,
         ignored: &mut Ignored,
         scene: String,
+        budget: ImageBudget,
     ) -> Result<(), SceneError> {
         let mut shown: Vec<usize> = self.meshes.iter().flatten().copied().collect();
         shown.sort_unstable();
@@ -122,10 +128,10 @@ impl Model {
             }
         }
         let file = &*file;
-        let mut images = Images::new(&file.path, &file.root, &file.buffers);
+        let mut images = Images::new(&file.path, &file.root, &file.buffers, budget);
         let mut looks: HashMap<Option<usize>, Look> = HashMap::new();
         for (mesh, primitive, shape) in shapes {
-            let material = material_of(file, mesh, primitive);
+            let material = material_of(file, mesh, primitive, ignored);
             let assets = &mut self.assets;
             let look = *looks.entry(material).or_insert_with(|| {
                 let from = material.and_then(|material| file.root.materials.get(material));
@@ -281,32 +287,32 @@ fn adopt(assets: Assets, world: &mut World) -> HashMap<AssetId, AssetId> {
 /// A node's name, or else that of its camera or light, so that cameras can be asked for.
 fn name(file: &GltfFile, node: &Node) -> Option<String> {
     let camera = node.camera.and_then(|camera| file.root.get(camera));
-    let light = light_of(file, node);
+    let light = light_of(node).and_then(|light| file.root.get(light));
     node.name
         .clone()
         .or_else(|| camera?.name.clone())
         .or_else(|| light?.name.clone())
-        .or_else(|| Some(format!("camera {}", node.camera?.value())))
+        .or_else(|| camera.and(node.camera).map(|index| format!("camera {}", index.value())))
 }
 
 fn read_camera(file: &GltfFile, node: &Node, ignored: &mut Ignored) -> Option<Camera> {
-    camera(file.root.get(node.camera?)?, ignored)
+    camera(ignored.existing(file.root.get(node.camera?), "cameras")?, ignored)
 }
 
-fn light_of<'a>(
-    file: &'a GltfFile,
-    node: &Node,
-) -> Option<&'a gltf::json::extensions::scene::khr_lights_punctual::Light> {
-    file.root.get(node.extensions.as_ref()?.khr_lights_punctual.as_ref()?.light)
+fn light_of(node: &Node) -> Option<Index<GltfLight>> {
+    Some(node.extensions.as_ref()?.khr_lights_punctual.as_ref()?.light)
 }
 
 fn read_light(file: &GltfFile, node: &Node, ignored: &mut Ignored) -> Option<Light> {
-    light(light_of(file, node)?, ignored)
+    light(ignored.existing(file.root.get(light_of(node)?), "lights")?, ignored)
 }
 
-fn material_of(file: &GltfFile, mesh: usize, primitive: u32) -> Option<usize> {
+/// The material of a primitive, if there is such a one.
+fn material_of(file: &GltfFile, mesh: usize, primitive: u32, ignored: &mut Ignored) -> Option<usize> {
     let mesh = file.root.meshes.get(mesh)?;
-    mesh.primitives.get(primitive as usize)?.material.map(|material| material.value())
+    let material = mesh.primitives.get(primitive as usize)?.material?;
+    ignored.existing(file.root.get(material), "materials")?;
+    Some(material.value())
 }
 
 /// What a primitive's entity is called: its mesh, and its material.

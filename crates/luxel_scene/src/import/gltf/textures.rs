@@ -15,7 +15,7 @@ use serde_json::Value;
 use crate::assets::{AssetId, Assets, ImageAsset, ImageSource};
 use crate::textures::{Filter, TextureRef, Wrap};
 
-use super::super::budget::ImageBudget;
+use super::super::budget::{ImageBudget, Room};
 use super::super::file_name;
 use super::super::image::decode;
 use super::buffers::{Buffers, resolve, short};
@@ -34,9 +34,8 @@ pub(super) struct Images<'a> {
 }
 
 impl<'a> Images<'a> {
-    /// None yet of those of the file at `path`.
-    pub(super) fn new(path: &'a Path, root: &'a Root, buffers: &'a Buffers) -> Self {
-        let budget = ImageBudget::default();
+    /// None yet of those of the file at `path`, and so much left for them.
+    pub(super) fn new(path: &'a Path, root: &'a Root, buffers: &'a Buffers, budget: ImageBudget) -> Self {
         Self { path, root, buffers, budget, known: HashMap::new(), warnings: Vec::new() }
     }
 
@@ -51,14 +50,10 @@ impl<'a> Images<'a> {
         if let Some(known) = self.known.get(&number) {
             return *known;
         }
-        let decoded = decode_image(self.path, self.root, self.buffers, number as u32, self.budget.left());
-        let fitting = decoded.and_then(|(image, warning)| {
-            let left = self.budget.after(image.pixels.bytes());
-            self.budget = left.map_err(|reason| format!("image {number} {reason}"))?;
-            Ok((image, warning))
-        });
-        let id = match fitting {
+        let room = self.budget.image();
+        let id = match decode_image(self.path, self.root, self.buffers, number as u32, room) {
             Ok((image, warning)) => {
+                self.budget = self.budget.without(image.pixels.bytes());
                 self.warnings.extend(warning);
                 Some(assets.insert_image(image))
             }
@@ -103,10 +98,7 @@ impl<'a> Images<'a> {
         assets: &mut Assets,
         ignored: &mut Ignored,
     ) -> Option<TextureRef> {
-        let Some(texture) = self.root.get(index) else {
-            ignored.add("textures that do not exist", "");
-            return None;
-        };
+        let texture = ignored.existing(self.root.get(index), "textures")?;
         if let Some(extensions) = &texture.extensions {
             extensions.others.keys().for_each(|name| ignored.extension(name, "texture"));
         }
@@ -126,7 +118,8 @@ impl<'a> Images<'a> {
             reference.rotation = finite(transform.rotation.0, 0.0);
             reference.scale = finite2(transform.scale.0, Vec2::ONE);
         }
-        if let Some(sampler) = texture.sampler.and_then(|sampler| self.root.get(sampler)) {
+        let sampler = texture.sampler.map(|sampler| ignored.existing(self.root.get(sampler), "samplers"));
+        if let Some(sampler) = sampler.flatten() {
             reference.wrap_u = wrap(sampler.wrap_s);
             reference.wrap_v = wrap(sampler.wrap_t);
             if matches!(sampler.mag_filter, Some(Checked::Valid(MagFilter::Nearest))) {
@@ -157,7 +150,7 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
 /// An image, and a warning about it.
 type Found = (ImageAsset, Option<String>);
 
-/// Image `number` of the file at `path`, of at most `limit` bytes.
+/// Image `number` of the file at `path`, if it fits into `room`.
 ///
 /// # Errors
 /// Why it cannot be used: a sentence.
@@ -166,7 +159,7 @@ pub(super) fn decode_image(
     root: &Root,
     buffers: &Buffers,
     number: u32,
-    limit: u64,
+    room: Room,
 ) -> Result<Found, String> {
     let name = format!("image {number}");
     let image = root.images.get(number as usize).ok_or_else(|| format!("{name} does not exist"))?;
@@ -181,6 +174,37 @@ pub(super) fn decode_image(
     };
     let by_name = image.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
     let by_name = by_name.and_then(|uri| ImageFormat::from_path(short(uri)).ok());
-    let decoded = decode(bytes, by_name, limit).map_err(|reason| format!("{name} {reason}"))?;
+    let decoded = decode(bytes, by_name, room).map_err(|reason| format!("{name} {reason}"))?;
     Ok(decoded.into_asset(ImageSource::ModelImage(path.to_owned(), number), &name))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_that_do_not_fit_together_are_left_out_by_number() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.gltf");
+        image::RgbaImage::new(32, 32).save(folder.path().join("a.png")).unwrap();
+        let images = vec![serde_json::json!({"uri": "a.png"}); 3];
+        let json = serde_json::json!({"asset": {"version": "2.0"}, "images": images}).to_string();
+        let root = Root::from_str(&json).unwrap();
+        let buffers = Buffers::read(&path, &root, None);
+        // Each fills 4 KiB.
+        for (bytes, fitting) in [(12 << 10, 3), ((12 << 10) - 1, 2), (8 << 10, 2), (4095, 0)] {
+            let mut images = Images::new(&path, &root, &buffers, ImageBudget::of(bytes));
+            let mut assets = Assets::default();
+            let used = (0..3).filter_map(|index| images.asset(Index::new(index), &mut assets)).count();
+            assert_eq!(
+                (used, images.used(), images.warnings.len()),
+                (fitting, fitting, 3 - fitting),
+                "{bytes}"
+            );
+            let expected =
+                "a.gltf: image 2 is one too many: it needs 1 MiB, and 0 MiB are left for it; it is left out";
+            assert!(images.warnings.last().is_none_or(|line| line == expected), "{:?}", images.warnings);
+        }
+    }
 }
