@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use luxel_accel::{build_mesh, sah_cost};
 use luxel_bake::build_options;
-use luxel_cpu::{Exclusion, traverse};
-use luxel_flat::{Counter, Counters, FlatScene, Instance, KIND_MESH, Triangle};
+use luxel_cpu::{Exclusion, first_hit, traverse};
+use luxel_flat::{Counters, FlatScene, Instance, KIND_MESH, Triangle};
 use luxel_geom::Ray;
 use luxel_scene::MeshStructure;
 use rayon::prelude::*;
@@ -125,19 +125,10 @@ fn fresh_cost(triangles: &[Triangle]) -> f64 {
 
 /// Nodes visited and primitives tested by rays.
 fn steps(scene: &FlatScene, rays: &[Ray<f32>]) -> u64 {
-    const COUNTED: [Counter; 7] = [
-        Counter::TlasNodes,
-        Counter::BvhNodes,
-        Counter::TriangleTests,
-        Counter::SphereNodes,
-        Counter::SphereTests,
-        Counter::SvoNodes,
-        Counter::VoxelTests,
-    ];
     let steps = |ray: &Ray<f32>| {
         let mut counters = Counters::default();
         traverse::intersect(scene, ray, &Exclusion::NOTHING, &mut counters);
-        COUNTED.iter().map(|counter| counters[*counter]).sum::<u64>()
+        u64::from(first_hit::steps(&Counters::default(), &counters))
     };
     rays.par_iter().map(steps).sum()
 }
