@@ -374,6 +374,24 @@ fn help_is_complete() {
     assert!(render.contains("Ctrl-C") && render.contains("Examples:"), "{render}");
 }
 
+#[test]
+fn a_log_filter_that_is_none_is_told_once_and_log_lines_in_a_pipe_have_no_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let logged = |filter: &str, arguments: &[&str]| {
+        let outcome = run(luxel(folder.path()).env("LUXEL_LOG", filter).args(arguments));
+        assert_eq!(outcome.code, Some(0), "{}", outcome.stderr);
+        outcome.stderr
+    };
+    let scene = asset("empty.ron");
+    let info = ["info", scene.to_str().unwrap()];
+    assert_eq!(logged("[[[", &info), "note: LUXEL_LOG '[[[' is ignored: invalid filter directive\n");
+    assert_eq!((logged("", &info), logged("debug", &info)), (String::new(), String::new()));
+    if luxel_gpu::testing::gpu_or_fail().is_some() {
+        let line = logged("luxel_gpu=info", &["doctor"]);
+        assert!(line.contains("INFO luxel_gpu") && !line.contains('\u{1b}'), "{line}");
+    }
+}
+
 /// Starts the program, asks it to stop as Ctrl-C does, insists on success soon after, and gives stdout.
 #[cfg(unix)]
 fn interrupted(command: &mut Command) -> String {

@@ -8,6 +8,7 @@ mod counters;
 mod dressed;
 mod first_hits;
 mod materials;
+mod media;
 mod slices;
 mod tile_means;
 #[path = "../support/traced.rs"]

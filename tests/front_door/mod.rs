@@ -17,7 +17,7 @@ pub(crate) struct Outcome {
 /// The program, to be started in `folder`.
 pub(crate) fn luxel(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_luxel"));
-    // Without this folder some Vulkan drivers complain on stderr, and Luxel cannot stop them.
+    // Without this folder Mesa's layer that selects Vulkan devices complains on stderr, and Luxel cannot stop it.
     command.current_dir(folder).env("XDG_RUNTIME_DIR", std::env::temp_dir()).env_remove("LUXEL_LOG");
     command
 }

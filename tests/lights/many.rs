@@ -11,7 +11,7 @@ use crate::scenes::{ball, dark, engine, floor, sample_by};
 
 const LIGHTS: usize = 10_000;
 
-fn plain(count: usize) -> luxel_engine::Engine {
+pub(crate) fn plain(count: usize) -> luxel_engine::Engine {
     let mut world = dark(DVec3::new(0.0, 3.0, 4.0), DVec3::ZERO, 0.8, 32);
     floor(&mut world, 40.0, 0.7);
     let mut random = Random::new(10_000);

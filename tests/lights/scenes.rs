@@ -8,8 +8,8 @@ use luxel_engine::Engine;
 use luxel_film::tracer::{TraceRequest, Tracer};
 use luxel_scene::{
     ActiveCamera, Assets, Camera, DistantLight, Environment, ImageAsset, ImagePixels, ImageSource,
-    LightSampling, Material, MeshAsset, MeshInstance, MeshSource, PointLight, RenderSettings, Sphere,
-    SpotLight, Transform,
+    LightSampling, Material, MeshAsset, MeshInstance, MeshSource, PointLight, Principled, RenderSettings,
+    Sphere, SpotLight, Transform, Volume,
 };
 use luxel_testkit::Random;
 
@@ -103,6 +103,12 @@ pub(crate) fn sphere_stage() -> World {
 /// The stage before a picture with a bright window.
 pub(crate) fn window_stage() -> World {
     let mut world = stage();
+    look_out(&mut world);
+    world
+}
+
+/// Surrounds a world with a picture with a bright window.
+fn look_out(world: &mut World) {
     let texel = |x: u32, y: u32| {
         let is_window = (9..12).contains(&x) && (2..6).contains(&y);
         if is_window { [9.0, 8.0, 6.0] } else { [0.1, 0.15, 0.3] }
@@ -112,6 +118,57 @@ pub(crate) fn window_stage() -> World {
     let image = ImageAsset { source, width: 32, height: 16, pixels: ImagePixels::RgbF32(pixels) };
     let image = world.resource_mut::<Assets>().insert_image(image);
     world.insert_resource(Environment::Map { image, rotation: -2.0, strength: 1.5 });
+}
+
+/// Balls of rough metal, rough glass (a body and a hollow shell), a coated material and a mixture of all, on a glossy floor.
+fn glossy_balls() -> World {
+    let mut world = dark(DVec3::new(0.0, 2.2, 6.0), DVec3::new(0.0, 0.6, 0.0), 0.55, 32);
+    world.resource_mut::<RenderSettings>().max_depth = 4;
+    let plain = Principled::default();
+    let of = Material::principled;
+    let floor = of(Principled { base_color: Vec3::new(0.6, 0.5, 0.4), roughness: 0.35, ..plain });
+    quad(&mut world, DVec3::ZERO, DQuat::IDENTITY, 12.0, floor);
+    let upright = DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2);
+    quad(&mut world, DVec3::new(0.0, 2.0, -2.0), upright, 12.0, Material::lambert(Vec3::splat(0.5)));
+    let water = Some(Volume { attenuation_color: Vec3::new(0.8, 0.9, 1.0), attenuation_distance: 1.0 });
+    let metal = Principled { base_color: Vec3::new(0.9, 0.7, 0.3), metallic: 1.0, roughness: 0.4, ..plain };
+    let glass = Principled { transmission: 1.0, roughness: 0.5, volume: water, ..plain };
+    let shell =
+        Principled { roughness: 0.6, specular_color: Vec3::new(1.0, 0.5, 0.2), volume: None, ..glass };
+    let coated = Principled {
+        base_color: Vec3::new(0.7, 0.2, 0.2),
+        roughness: 0.7,
+        clearcoat: 1.0,
+        clearcoat_roughness: 0.3,
+        ..plain
+    };
+    let mixed =
+        Principled { metallic: 0.3, roughness: 0.45, transmission: 0.5, ior: 1.8, clearcoat: 0.5, ..glass };
+    let places = [
+        (DVec3::new(-1.6, 0.5, 0.0), metal),
+        (DVec3::new(-0.5, 0.5, 0.4), glass),
+        (DVec3::new(0.6, 0.5, 0.4), shell),
+        (DVec3::new(1.7, 0.5, 0.0), coated),
+        (DVec3::new(0.1, 0.5, 1.6), mixed),
+    ];
+    for (at, surface) in places {
+        ball(&mut world, at, 0.5, of(surface));
+    }
+    world
+}
+
+/// Glossy balls under a square lamp.
+pub(crate) fn glossy_lamp_stage() -> World {
+    let mut world = glossy_balls();
+    let down = DQuat::from_rotation_x(2.8);
+    quad(&mut world, DVec3::new(0.0, 3.2, 0.6), down, 1.5, Material::lamp(Vec3::new(6.0, 5.5, 5.0)));
+    world
+}
+
+/// Glossy balls before a picture with a bright window.
+pub(crate) fn glossy_window_stage() -> World {
+    let mut world = glossy_balls();
+    look_out(&mut world);
     world
 }
 

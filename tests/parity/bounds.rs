@@ -28,6 +28,8 @@ pub(crate) const GUARD: f32 = 128.0;
 pub(crate) const TEXTURE: f32 = 256.0;
 /// As [`LEVEL`], for `sky_light`.
 pub(crate) const SKY: f32 = 8192.0;
+/// As [`LEVEL`], for `medium_transmittance`: 8 + 7 · 80, the exponent at which light is black.
+pub(crate) const ABSORPTION: f32 = 568.0;
 const BY_SINE: &str = "WGSL's sin and cos of an angle";
 
 /// The bound of a function.
@@ -55,7 +57,7 @@ const fn counted(function: &'static str, most: f32, backward: f32, because: &'st
 }
 
 /// In the order of the cases.
-pub(crate) const BOUNDS: [Bound; 45] = [
+pub(crate) const BOUNDS: [Bound; 48] = [
     bound("box_interval", 16.0, 4.0, "difference 2u, reciprocal 5u, product 2u, pad 2u; Rust 4u"),
     bound(
         "intersect_sphere",
@@ -194,4 +196,7 @@ pub(crate) const BOUNDS: [Bound; 45] = [
         near: near_sky,
         ..counted("sky_light", SKY, 16.0, "counted at sky_errors; inside or outside a sun's rim, which cell")
     },
+    bound("met_by", 8.0, 16.0, "a quotient: 5u and Rust 1u; which side of a surface seen edge-on"),
+    bound("media_towards", 1.0, 16.0, "integers; which side of a surface seen edge-on"),
+    counted("medium_transmittance", ABSORPTION, 0.0, "counted at its case"),
 ];

@@ -1,6 +1,6 @@
 //! The functions that have twins: how each is called in WESL and in Rust, and on what. Geometry is here, reflection in
 //! `reflectance.rs`, sampling and maps in `sampling.rs`, what shading starts from in `surfaces.rs`, textures and what else surfaces carry in `dressing.rs`,
-//! lights in `lighting.rs`.
+//! lights in `lighting.rs`, bodies inside bodies in `media.rs`.
 use glam::Vec3;
 use luxel_film::{ToneMap, tonemap};
 use luxel_flat::{PATH_ENTERING, PATH_LEAVING};
@@ -13,9 +13,9 @@ use rayon::prelude::*;
 
 use crate::bounds::{BOUNDS, Bound};
 use crate::device::Function;
-use crate::inputs::{input, number, point, ray, size, unit};
+use crate::inputs::{input, number, point, ray, ray_from_beside, size, unit};
 use crate::judge::{Call, Expected, Input, Output};
-use crate::{dressing, lighting, reflectance, sampling, surfaces};
+use crate::{dressing, lighting, media, reflectance, sampling, surfaces};
 
 /// Calls that are made together: little enough memory to be used again for the next.
 pub(crate) const BATCH: usize = 1 << 16;
@@ -65,7 +65,8 @@ fn call(in: Input) -> Output {{ {} }}",
 
 /// Every case, of this file and of the others.
 pub(crate) fn all() -> impl Iterator<Item = &'static Case> {
-    let of_tracers = surfaces::CASES.iter().chain(&dressing::CASES).chain(&lighting::CASES);
+    let of_tracers =
+        surfaces::CASES.iter().chain(&dressing::CASES).chain(&lighting::CASES).chain(&media::CASES);
     CASES.iter().chain(&reflectance::CASES).chain(&sampling::CASES).chain(of_tracers)
 }
 
@@ -156,7 +157,10 @@ static CASES: [Case; 12] = [
         make: |r| {
             let [v0, v1, v2] = [point(r), point(r), point(r)];
             let (u, v) = (r.uniform(), r.uniform() * r.below(2) as f32);
-            let (origin, direction) = ray(r, v0 + (v1 - v0) * (u * (1.0 - v)) + (v2 - v0) * v);
+            let target = v0 + (v1 - v0) * (u * (1.0 - v)) + (v2 - v0) * v;
+            // Some start so near to the triangle that its plane has to decide.
+            let start = if r.below(16) == 0 { ray_from_beside } else { ray };
+            let (origin, direction) = start(r, target);
             input([(origin, v2.x), (direction, v2.y), (v0, v2.z), (v1, 0.0)])
         },
     },

@@ -3,7 +3,7 @@ use glam::Vec3;
 use luxel_testkit::Random;
 use luxel_testkit::rays::{direction, lattice_directions};
 
-use crate::judge::Input;
+use crate::judge::{Input, U};
 
 /// A number of any of the hard kinds.
 pub(crate) fn number(random: &mut Random) -> f32 {
@@ -50,6 +50,13 @@ pub(crate) fn ray(random: &mut Random, target: Vec3) -> (Vec3, Vec3) {
             (origin, if aim == Vec3::ZERO { Vec3::X } else { aim })
         }
     }
+}
+
+/// An origin beside a target, ahead of it or behind by some of its roundings, and a direction.
+pub(crate) fn ray_from_beside(random: &mut Random, target: Vec3) -> (Vec3, Vec3) {
+    let (along, away) = (unit(random), random.log_between(U, 1e4 * U) * target.abs().max_element());
+    let away = if random.below(2) == 0 { away } else { -away };
+    (target - along * away, along)
 }
 
 /// Four vectors, each with a fourth number.

@@ -13,6 +13,7 @@ mod inputs;
 mod integers;
 mod judge;
 mod lighting;
+mod media;
 mod reflectance;
 mod sampling;
 mod scene;

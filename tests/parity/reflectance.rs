@@ -1,6 +1,6 @@
 //! Cases of microfacets, Schlick's approximation and the albedo tables.
 use glam::Vec3;
-use luxel_geom::albedo::{TABLES, lookup};
+use luxel_geom::albedo::{Facets, TABLES, lookup};
 use luxel_geom::{microfacet as ggx, schlick};
 use luxel_testkit::Random;
 
@@ -158,8 +158,8 @@ pub(crate) static CASES: [Case; 10] = [
             import package::geom::schlick::multi_scatter_tint;",
         body: "let mean = conductor_loss_average(in.a.y);
             let own = conductor_loss(in.a.x, in.a.y);
-            return give(vec4f(own, mean, compensation(own, conductor_loss(in.a.w, in.a.y), mean),
-                multi_scatter_tint(vec3f(in.a.x), mean).x), 1u);",
+            let lobe = compensation(vec3f(own), vec3f(conductor_loss(in.a.w, in.a.y)), vec3f(mean)).x;
+            return give(vec4f(own, mean, lobe, multi_scatter_tint(vec3f(in.a.x), mean).x), 1u);",
         twin: |i| {
             let [cos, roughness, _, other] = i.a;
             let mean = lookup::conductor_loss_average(&TABLES, roughness);
@@ -190,13 +190,15 @@ pub(crate) static CASES: [Case; 10] = [
         function: "glass_loss",
         imports: "import package::geom::albedo::{glass_loss, glass_loss_average};",
         body: "let eta = select(in.a.z, 1.0 / in.a.z, in.code.x == 1u);
-            return give(vec4f(glass_loss(in.a.x, in.a.y, eta), glass_loss_average(in.a.y, eta), 0.0, 0.0), 1u);",
+            let own = glass_loss(in.code.y, in.a.x, in.a.y, eta);
+            return give(vec4f(own, glass_loss_average(in.code.y, in.a.y, eta), 0.0, 0.0), 1u);",
         twin: |i| {
-            let [cos, roughness, eta, _] = i.a;
+            let ([cos, roughness, eta, _], facets) = (i.a, Facets::ALL[i.code[1] as usize]);
             let eta = if i.code[0] == 1 { 1.0 / eta } else { eta };
-            let own = lookup::glass_loss(&TABLES, cos, roughness, eta);
-            Expected::scaled(1, [own, lookup::glass_loss_average(&TABLES, roughness, eta), 0.0, 0.0], 1.0)
+            let own = lookup::glass_loss(&TABLES, facets, cos, roughness, eta);
+            let mean = lookup::glass_loss_average(&TABLES, facets, roughness, eta);
+            Expected::scaled(1, [own, mean, 0.0, 0.0], 1.0)
         },
-        make: |r| Input { code: [r.below(2), 0, 0, 0], ..table_place(r) },
+        make: |r| Input { code: [r.below(2), r.below(3), 0, 0], ..table_place(r) },
     },
 ];

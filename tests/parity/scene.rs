@@ -6,11 +6,11 @@ use std::sync::{Arc, LazyLock};
 use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3, Vec3};
 use luxel_engine::Engine;
-use luxel_flat::{FlatScene, INSTANCE_ALPHA, INSTANCE_NORMALS, INSTANCE_TANGENTS, KIND_MESH};
+use luxel_flat::{FlatScene, INSTANCE_ALPHA, INSTANCE_NORMALS, INSTANCE_TANGENTS, KIND_MESH, MaterialRecord};
 use luxel_scene::{
     AssetId, Assets, Camera, DistantLight, Environment, ImageAsset, ImagePixels, ImageSource, Material,
     MaterialTextures, MeshAsset, MeshInstance, MeshSource, Opacity, PointLight, Principled, SmoothNormals,
-    Sphere, SpotLight, Transform,
+    Sphere, SpotLight, Transform, Volume,
 };
 use luxel_testkit::Random;
 
@@ -43,6 +43,9 @@ fn check(scene: &FlatScene) {
     kinds.sort_unstable();
     kinds.dedup();
     assert_eq!(kinds.len(), 5, "kinds of lights");
+    let absorbs = |m: &&MaterialRecord| m.absorption.iter().any(|sigma| *sigma > 0.0);
+    let absorbing = scene.materials.as_slice().iter().filter(absorbs).count();
+    assert!(absorbing > 1 && absorbing < scene.materials.len() && scene.materials.len() > 8);
     assert!(scene.params.environment_width > 0 && scene.params.distant_count == 2);
 }
 
@@ -73,7 +76,11 @@ fn add_balls(world: &mut World) {
         [Opacity::Opaque, Opacity::Mask { alpha: 0.9, cutoff: 0.4 }, Opacity::Blend { alpha: 0.8 }];
     for (index, opacity) in opacities.into_iter().cycle().take(6).enumerate() {
         let emission = Vec3::splat(0.5) * (index % 2) as f32;
-        let material = Material { opacity, emission, ..Material::principled(layered) };
+        let tint = Vec3::new(0.9, 0.5, 0.2 * index as f32);
+        let volume = Volume { attenuation_color: tint, attenuation_distance: 0.5 + index as f32 };
+        let body =
+            Principled { ior: 1.2 + 0.1 * index as f32, volume: (index > 2).then_some(volume), ..layered };
+        let material = Material { opacity, emission, ..Material::principled(body) };
         let scale = DVec3::new(if index % 2 == 0 { 0.6 } else { -0.6 }, 0.5, 0.7);
         let rotation = DQuat::from_rotation_y(0.4 * index as f64);
         let place = Transform { scale, rotation, ..Transform::at(DVec3::new(index as f64 - 2.5, 0.0, 0.0)) };

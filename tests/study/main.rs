@@ -4,6 +4,8 @@
 mod bvh;
 #[path = "../front_door/mod.rs"]
 mod front_door;
+#[cfg(unix)]
+mod full_disk;
 mod octree;
 mod page;
 

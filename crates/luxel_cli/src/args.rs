@@ -51,8 +51,8 @@ pub(crate) enum Command {
     /// Say what a scene holds, costs and calls for
     ///
     /// Prints counts, memory per heap, the structures with their depths, which one the spheres have and why, features
-    /// in use and left out with the reason for each, cameras and the scenes of a glTF file with their numbers, what import
-    /// dropped, and warnings.
+    /// in use and left out with the reason for each, cameras and the scenes of a glTF file with their numbers, what of a model
+    /// is used, ignored and dropped, and warnings.
     Info(InfoArgs),
     /// Show the passes that a scene would run, and why
     ///
@@ -70,8 +70,8 @@ pub(crate) enum Command {
     Study(StudyArgs),
     /// Say what this machine offers and what a render would use
     ///
-    /// Prints the graphics adapters, the backend that auto takes and why, and what the best adapter's driver does to
-    /// floating-point numbers.
+    /// Prints the graphics adapters (with --json their limits too), the backend that auto takes and why, and what the best
+    /// adapter's driver does to floating-point numbers.
     Doctor(DoctorArgs),
 }
 

@@ -57,7 +57,8 @@ fn head(info: &SceneInfo) -> String {
 }
 
 /// `1 sphere`, `2 spheres`.
-fn counted(count: u64, unit: &str) -> String {
+fn counted(count: impl Into<u64>, unit: &str) -> String {
+    let count = count.into();
     if count == 1 { format!("1 {unit}") } else { format!("{count} {unit}s") }
 }
 
@@ -103,28 +104,32 @@ fn structures(info: &SceneInfo) -> String {
     let baked = &info.baked;
     let SphereAccelFacts { name, because, nodes, depth, bytes, .. } = &info.sphere_accel;
     let mut text = format!(
-        "structures\n  TLAS depth {}\n  spheres: {name} of {nodes} nodes, depth {depth}, {}, because {because}\n",
+        "structures\n  TLAS depth {}\n  spheres: {name} of {}, depth {depth}, {}, because {because}\n",
         baked.tlas_depth,
+        counted(*nodes, "node"),
         reply::bytes(*bytes)
     );
     for mesh in &baked.meshes {
         let (asset, triangles, nodes, depth) = (mesh.asset, mesh.triangles, mesh.nodes, mesh.depth);
         let name = if asset == 0 { "all meshes".to_owned() } else { format!("mesh {asset}") };
         let tree = match nodes {
-            0 => format!("{triangles} triangles, in the tree over all meshes"),
-            _ => format!("BVH of {triangles} triangles, {nodes} nodes, depth {depth}"),
+            0 => format!("{}, in the tree over all meshes", counted(triangles, "triangle")),
+            _ => format!(
+                "BVH of {}, {}, depth {depth}",
+                counted(triangles, "triangle"),
+                counted(nodes, "node")
+            ),
         };
         put(&mut text, format_args!("  {name}: {tree}"));
     }
     for volume in &baked.volumes {
-        let (asset, voxels, nodes, levels) = (volume.asset, volume.voxels, volume.nodes, volume.levels);
-        let materials = volume.materials;
-        put(
-            &mut text,
-            format_args!(
-                "  volume {asset}: octree of {voxels} voxels, {nodes} nodes, {levels} levels, {materials} materials"
-            ),
-        );
+        let of = [
+            counted(volume.voxels, "voxel"),
+            counted(volume.nodes, "node"),
+            counted(volume.levels, "level"),
+            counted(volume.materials, "material"),
+        ];
+        put(&mut text, format_args!("  volume {}: octree of {}", volume.asset, of.join(", ")));
     }
     text
 }

@@ -14,6 +14,7 @@ mod graph;
 mod ignored;
 mod info;
 mod interrupt;
+mod log;
 mod opened;
 mod progress;
 mod render;
@@ -28,19 +29,15 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Parser;
-use tracing_subscriber::EnvFilter;
 
 use args::{Cli, Command};
 use error::CliError;
-
-/// What is logged when `LUXEL_LOG` says nothing. What bake and the GPU room warn about is told as a notice or an error.
-const DEFAULT_LOG: &str = "warn,luxel_bake=error,luxel_gpu=error,wgpu_core=off,wgpu_hal=off,naga=off";
 
 /// Runs the program with its arguments (the first is its own name) and gives its exit code.
 ///
 /// `source` is the folder that the program was built from: the last place where the showcase scene is looked for.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, source: &Path) -> ExitCode {
-    log_to_stderr();
+    log::to_stderr();
     let code = match Cli::try_parse_from(arguments) {
         Ok(cli) => answer(cli, source).unwrap_or_else(|error| error::tell(&error)),
         Err(error) => error::tell_usage(&error),
@@ -58,14 +55,4 @@ fn answer(cli: Cli, source: &Path) -> Result<luxel_engine::ExitCode, CliError> {
         Some(Command::Study(args)) => study::study(&args),
         Some(Command::Doctor(args)) => doctor::doctor(&args),
     }
-}
-
-fn log_to_stderr() {
-    let filter = EnvFilter::try_from_env("LUXEL_LOG").unwrap_or_else(|_| EnvFilter::new(DEFAULT_LOG));
-    // Fails only where a program that uses this library logs already.
-    _ = tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .without_time()
-        .try_init();
 }

@@ -106,18 +106,28 @@ pub fn media_towards<R: Real>(
     surface: &Surface<R>,
     geometry: &Geometry<R>,
     wi: R::Vec3,
-    counters: &mut Counters,
 ) -> Media {
     if wi.dot(geometry.geometric) >= R::ZERO || surface.body == NONE {
         return media;
     }
     let others = media.without(surface.body);
-    if !geometry.front {
-        return others;
-    }
-    let [a, b, c, forgotten] = others.0;
-    counters[Counter::MediaOverflows] += u64::from(forgotten != NONE);
-    Media([surface.body, a, b, c])
+    let [a, b, c, _] = others.0;
+    if geometry.front { Media([surface.body, a, b, c]) } else { others }
+}
+
+/// [`media_towards`] for a path that goes on there; counts a body that it forgets.
+pub fn carry_media<R: Real>(
+    media: Media,
+    surface: &Surface<R>,
+    geometry: &Geometry<R>,
+    wi: R::Vec3,
+    counters: &mut Counters,
+) -> Media {
+    let there = media_towards(media, surface, geometry, wi);
+    let [.., outermost] = media.0;
+    let is_forgotten = outermost != NONE && outermost != surface.body && !there.contains(outermost);
+    counters[Counter::MediaOverflows] += u64::from(is_forgotten);
+    there
 }
 
 /// True if a surface bounds a body that light passes.

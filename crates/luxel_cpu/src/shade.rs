@@ -7,7 +7,7 @@ use luxel_geom::{Ray, Real, Vector, rng};
 use crate::alpha::ray_coins;
 use crate::bsdf::{self, BsdfSample, Geometry};
 use crate::lights::{self, LightSample, Receiver, shadow};
-use crate::medium::{media_towards, medium_transmittance};
+use crate::medium::{carry_media, media_towards, medium_transmittance};
 use crate::surface::Surface;
 use crate::{Exclusion, Hit, PathState, sky};
 
@@ -104,15 +104,14 @@ fn gather_light<R: Real>(
     let radiance = path.throughput * value.f_cos * light.radiance * weight;
     // A light that does not count adds no NaN either; one that counts is not lost beside black channels.
     let is_black = radiance.x() <= R::ZERO && radiance.y() <= R::ZERO && radiance.z() <= R::ZERO;
-    if weight == R::ZERO
-        || is_black
-        || !shadow::is_visible(scene, hit, surface, light, coins_of(scene, path), counters)
-    {
+    if weight == R::ZERO || is_black {
         return;
     }
-    let medium = media_towards(path.media, surface, geometry, light.wi, counters).innermost();
+    let medium = media_towards(path.media, surface, geometry, light.wi).innermost();
     let transmittance = medium_transmittance::<R>(scene, features, medium, light.distance, counters);
-    path.radiance = path.radiance + radiance * transmittance;
+    if shadow::is_visible(scene, hit, surface, light, coins_of(scene, path), counters) {
+        path.radiance = path.radiance + radiance * transmittance;
+    }
 }
 
 /// Sends the path on in a scattered direction; false if its light is absorbed.
@@ -133,7 +132,7 @@ fn scatter<R: Real>(
     counters[Counter::ScatteredRays] += 1;
     path.throughput = path.throughput * weight;
     path.eta_scale *= eta_scale;
-    path.media = media_towards(path.media, surface, geometry, wi, counters);
+    path.media = carry_media(path.media, surface, geometry, wi, counters);
     path.ray = Ray::new(surface.place.spawn_origin(wi), wi);
     path.pdf = pdf;
     path.normal = surface.shading_normal;

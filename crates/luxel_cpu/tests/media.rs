@@ -4,7 +4,7 @@
 use glam::DVec3;
 use luxel_cpu::PathState;
 use luxel_cpu::bsdf::Bsdf;
-use luxel_cpu::medium::{Media, media_towards, met_by};
+use luxel_cpu::medium::{Media, carry_media, met_by};
 use luxel_cpu::surface::{Place, Surface};
 use luxel_flat::{
     Counter, Counters, Feature, FeatureSet, FlatScene, Heap, MATERIAL_DIELECTRIC, MATERIAL_LAMBERT,
@@ -55,7 +55,7 @@ fn meet(features: FeatureSet, path: &PathState<f64>, body: u32, enters: bool) ->
 
 /// The bodies of a path after it crossed what it met.
 fn crossed(path: &PathState<f64>, met: &Surface<f64>, counters: &mut Counters) -> [u32; 4] {
-    media_towards(path.media, met, &met.facing(DVec3::Z), DVec3::Z, counters).0
+    carry_media(path.media, met, &met.facing(DVec3::Z), DVec3::Z, counters).0
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn the_list_is_a_plain_list_of_the_four_innermost() {
         let around = plain.first().map_or(1.0, |&other| 1.0 + 0.25 * f64::from(other));
         assert!(is_no_border || met.bsdf.ior == (1.0 + 0.25 * f64::from(body)) / around);
         // Whoever stays on the side stays in the bodies.
-        let back = media_towards(path.media, &met, &met.facing(DVec3::Z), -DVec3::Z, &mut counters);
+        let back = carry_media(path.media, &met, &met.facing(DVec3::Z), -DVec3::Z, &mut counters);
         assert_eq!(back, path.media);
         if enters {
             plain.insert(0, body);

@@ -46,9 +46,15 @@ shared_const! {
     pub const ALBEDO_ODDS: u32 = luxel_geom::albedo::ODDS;
     /// Where the averages of what passes start.
     pub const ALBEDO_PASSING_AVERAGES: u32 = luxel_geom::albedo::PASSING_AVERAGES;
-    /// Where the albedo table of glass starts.
+    /// Clear microfacets that reflect by Fresnel's equations.
+    pub const FACETS_EXACT: u32 = luxel_geom::albedo::Facets::Exact as u32;
+    /// Clear microfacets that reflect nothing.
+    pub const FACETS_CLEAR: u32 = luxel_geom::albedo::Facets::Clear as u32;
+    /// Clear microfacets that reflect by Schlick's weight.
+    pub const FACETS_RIM: u32 = luxel_geom::albedo::Facets::Rim as u32;
+    /// Where the albedo tables of glass start, in the order of what the microfacets reflect.
     pub const ALBEDO_GLASS: u32 = luxel_geom::albedo::GLASS;
-    /// Where the averages of the albedo table of glass start.
+    /// Where the averages of the albedo tables of glass start.
     pub const ALBEDO_GLASS_AVERAGES: u32 = luxel_geom::albedo::GLASS_AVERAGES;
     /// Random-number blocks of the camera.
     pub const CAMERA_BLOCKS: u32 = luxel_geom::rng::CAMERA_BLOCKS;

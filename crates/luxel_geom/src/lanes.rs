@@ -3,7 +3,8 @@
 //! Each lane computes what the scalar code computes with the same operations in the same order, bit for bit.
 //!
 //! Inlined by force, here and where lanes are used: passed between functions, lanes go through memory, which made a
-//! walk through a tree twice as slow.
+//! walk through a tree twice as slow. For the same reason `map` of arrays is not used on them: it is inlined or not as
+//! the caller's size will have it.
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -44,7 +45,8 @@ macro_rules! impl_lanes {
         impl Lanes<$real> for $vec4 {
             #[inline(always)]
             fn from_f32(lanes: [f32; 4]) -> Self {
-                Self::from_array(lanes.map(<$real>::from))
+                let [x, y, z, w] = lanes;
+                Self::from_array([x.into(), y.into(), z.into(), w.into()])
             }
             #[inline(always)]
             fn from_array(lanes: [$real; 4]) -> Self {
@@ -52,7 +54,9 @@ macro_rules! impl_lanes {
             }
             #[inline(always)]
             fn columns(rows: [[f32; 4]; 4]) -> [Self; 3] {
-                let [a, b, c, d] = rows.map(Self::from_f32);
+                let [a, b, c, d] = rows;
+                let [a, b, c, d] =
+                    [Self::from_f32(a), Self::from_f32(b), Self::from_f32(c), Self::from_f32(d)];
                 let columns = <$mat4>::from_cols(a, b, c, d).transpose();
                 [columns.x_axis, columns.y_axis, columns.z_axis]
             }

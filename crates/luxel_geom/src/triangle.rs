@@ -125,7 +125,7 @@ impl<R: Real> TriangleRay<R> {
             _ => [x, y, z],
         };
         let (x, y, z) = (x - self.origin[0], y - self.origin[1], z - self.origin[2]);
-        let [moved_x, moved_y] = self.slope.map(|slope| slope * z);
+        let (moved_x, moved_y) = (self.slope[0] * z, self.slope[1] * z);
         Sheared {
             x: x - moved_x,
             y: y - moved_y,

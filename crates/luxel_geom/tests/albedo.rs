@@ -1,7 +1,7 @@
 //! The albedo tables against another integral than the one that made them, and the energy that compensation returns.
 #![allow(clippy::print_stdout)]
 use glam::DVec3;
-use luxel_geom::albedo::{self, TABLES, axes, lookup};
+use luxel_geom::albedo::{self, Facets, TABLES, axes, lookup};
 use luxel_geom::{microfacet as ggx, optics, schlick};
 use luxel_testkit::Random;
 
@@ -48,14 +48,21 @@ fn coat(cos: f64, roughness: f64, eta: f64) -> f64 {
     })
 }
 
-fn glass(cos: f64, roughness: f64, eta: f64) -> f64 {
+fn glass(facets: Facets, cos: f64, roughness: f64, eta: f64) -> f64 {
     let alpha = roughness * roughness;
     1.0 - over_normals(cos, alpha, |wo, h| {
         let fresnel = optics::fresnel_dielectric(wo.dot(h), eta);
         let wi = optics::refract::<f64>(wo, h, eta, fresnel.cos_t);
-        let passes = fresnel.reflectance < 1.0 && wi.z < 0.0;
+        let outer = if eta > 1.0 { wo.dot(h) } else { -wi.dot(h) };
+        let reflected = match facets {
+            _ if fresnel.reflectance == 1.0 => 1.0,
+            Facets::Exact => fresnel.reflectance,
+            Facets::Clear => 0.0,
+            Facets::Rim => (1.0 - outer).powi(5),
+        };
+        let passes = reflected < 1.0 && wi.z < 0.0;
         let through = if passes { ggx::masking_shadowing::<f64>(wo, wi, alpha) } else { 0.0 };
-        fresnel.reflectance * mirrored(wo, h, alpha) + (1.0 - fresnel.reflectance) * through
+        reflected * mirrored(wo, h, alpha) + (1.0 - reflected) * through
     })
 }
 
@@ -124,13 +131,15 @@ fn albedos_of_rims_are_those_of_the_other_integral() {
 #[test]
 fn losses_of_glass_are_those_of_the_other_integral() {
     let mut random = Random::new(3);
-    let (worst, mean) = differences(200, || {
-        let (cos, roughness, eta) = case(&mut random, 0.1);
-        let eta = if random.below(2) == 0 { eta } else { eta.recip() };
-        glass(cos, roughness, eta) - lookup::glass_loss(&TABLES, cos, roughness, eta)
-    });
-    println!("glass: {worst:e} {mean:e}");
-    assert!(worst < 3e-3 && mean < 7e-4, "{worst:e} {mean:e}");
+    for facets in Facets::ALL {
+        let (worst, mean) = differences(200, || {
+            let (cos, roughness, eta) = case(&mut random, 0.1);
+            let eta = if random.below(2) == 0 { eta } else { eta.recip() };
+            glass(facets, cos, roughness, eta) - lookup::glass_loss(&TABLES, facets, cos, roughness, eta)
+        });
+        println!("glass, {facets:?}: {worst:e} {mean:e}");
+        assert!(worst < 3e-3 && mean < 7e-4, "{facets:?}: {worst:e} {mean:e}");
+    }
 }
 
 /// The lookups' albedo of a rough dielectric's reflection.
@@ -139,9 +148,10 @@ fn coat_albedo(cos: f64, roughness: f64, eta: f64) -> f64 {
     kept * lookup::mean_reflectance(&TABLES, cos, roughness, eta)
 }
 
-/// 2 ∫ f(cos) cos dcos, in the logarithm of the cosine: losses stand at cosines of about α.
+/// 2 ∫ f(cos) cos dcos, in the logarithm of the cosine: losses stand at cosines of about α. So many points, because those of
+/// smooth glass have a ridge of that width at the critical angle.
 fn average(f: impl Fn(f64) -> f64) -> f64 {
-    const COUNT: u32 = 4000;
+    const COUNT: u32 = 40_000;
     const RANGE: f64 = 16.0;
     let at = |k: u32| (-RANGE * (f64::from(k) + 0.5) / f64::from(COUNT)).exp();
     (0..COUNT).map(at).map(|cos| 2.0 * f(cos) * cos * cos).sum::<f64>() * RANGE / f64::from(COUNT)
@@ -165,12 +175,16 @@ fn averages_are_those_of_the_lookups() {
         let found = lookup::coat_passing_average(&TABLES, roughness, eta)
             + lookup::conductor_loss_average(&TABLES, roughness);
         assert!((found / under - 1.0).abs() < 5e-3, "{roughness} {eta}: {under} {found}");
-        for eta in [eta, eta.recip()] {
-            let glass = average(|c| lookup::glass_loss(&TABLES, c, roughness, eta));
-            let found = lookup::glass_loss_average(&TABLES, roughness, eta);
-            let off = (found / glass - 1.0).abs();
+        for (facets, eta) in Facets::ALL.into_iter().flat_map(|f| [(f, eta), (f, eta.recip())]) {
+            let glass = average(|c| lookup::glass_loss(&TABLES, facets, c, roughness, eta));
+            let found = lookup::glass_loss_average(&TABLES, facets, roughness, eta);
+            // Light that is lost nowhere to a millionth need not be given back to so many digits.
+            let places = (1..=100).map(|n| f64::from(n) / 100.0);
+            let largest = places.map(|c| lookup::glass_loss(&TABLES, facets, c, roughness, eta));
+            let is_seen = largest.fold(0.0, f64::max) > 1e-6;
+            let off = if is_seen { (found / glass - 1.0).abs() } else { 0.0 };
             worst = worst.max(off);
-            assert!(off < 5e-3, "{roughness} {eta}: {glass} {found}");
+            assert!(off < 5e-3, "{facets:?} {roughness} {eta}: {glass} {found}");
         }
     }
     println!("largest relative error of an average loss: {worst:e}");
@@ -205,10 +219,15 @@ fn lookups_hold_outside_their_axes() {
             lookup::rim_albedo_average(&TABLES, roughness),
             lookup::mean_reflectance(&TABLES, cos, roughness, eta.max(1.0)),
             lookup::coat_passing_average(&TABLES, roughness, eta.max(1.0)),
-            lookup::glass_loss(&TABLES, cos, roughness, eta),
-            lookup::glass_loss_average(&TABLES, roughness, eta),
         ];
-        assert!(losses.iter().all(|loss| (0.0..=1.0).contains(loss)), "{cos} {roughness} {eta}: {losses:?}");
+        let of_glass = Facets::ALL.map(|facets| {
+            let average = lookup::glass_loss_average(&TABLES, facets, roughness, eta);
+            average.max(lookup::glass_loss(&TABLES, facets, cos, roughness, eta))
+        });
+        assert!(
+            losses.iter().chain(&of_glass).all(|loss| (0.0..=1.0).contains(loss)),
+            "{cos} {roughness} {eta}: {losses:?}"
+        );
     }
     assert_eq!(lookup::compensation(0.0f32, 0.0, 0.0), 0.0);
     assert_eq!(lookup::conductor_loss::<f32>(&[], 0.5, 0.5), 0.0);
@@ -222,6 +241,8 @@ fn places_and_values_are_inverse() {
         let back = [
             axes::roughness_place(roughness),
             axes::cosine_place(axes::cosine_at(place, roughness), roughness),
+            axes::glass_cosine_place(axes::glass_cosine_at(place, roughness, 0.7), roughness, 0.7),
+            axes::glass_cosine_place(axes::glass_cosine_at(place, roughness, 1.5), roughness, 1.5),
             axes::thin_index_place(axes::thin_index_at(place)),
             axes::glass_index_place(axes::glass_index_at(place)),
         ];

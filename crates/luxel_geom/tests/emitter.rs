@@ -1,11 +1,12 @@
 //! Directions to emitters: chi-squared against their densities, tiny and near spheres, the ends of every dimension
 //! (robustness.md L09, L12).
 #![allow(clippy::unwrap_used)]
-mod support;
+use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec3};
 use luxel_geom::{Real, Vector, emitter, warp};
-use luxel_testkit::Random;
+use luxel_testkit::pearson::{chi_squared, least_p};
+use luxel_testkit::{Random, pairs_of_ends};
 
 fn double<R: Real>(v: R::Vec3) -> DVec3 {
     DVec3::new(v.x().to_f64(), v.y().to_f64(), v.z().to_f64())
@@ -22,17 +23,81 @@ fn p_of_cone<R: Real>(opening: f64) -> f64 {
         // From the sine, as 1 − z has no digits in a narrow cone.
         let sin2 = v.x * v.x + v.y * v.y;
         let below = if v.z > 0.0 { sin2 / (1.0 + v.z) } else { 1.0 - v.z };
-        [(below / opening).min(1.0), (v.y.atan2(v.x) / std::f64::consts::TAU).rem_euclid(1.0)]
+        [(below / opening).min(1.0), (v.y.atan2(v.x) / TAU).rem_euclid(1.0)]
     };
-    support::chi_squared(3, sample, |_, _| 1.0).1
+    chi_squared(3, sample, |_, _| 1.0).1
 }
 
 #[test]
 fn cones_are_uniform_however_narrow() {
-    let least = support::least_p(10);
+    let least = least_p(10);
     for opening in [5e-13, 1e-7, 1e-3, 1.0, 2.0] {
         let (single, double) = (p_of_cone::<f32>(opening), p_of_cone::<f64>(opening));
         assert!(single > least && double > least, "{opening:e}: {single:e} {double:e}");
+    }
+}
+
+/// A vector across another, and one across both, made in a way of its own.
+fn across(axis: DVec3) -> [DVec3; 2] {
+    let s = axis.any_orthonormal_vector();
+    [s, axis.cross(s)]
+}
+
+/// p of directions around an axis against a density that is the same in all of them, `opening` being 1 − cos of the
+/// half angle.
+fn p_around(axis: DVec3, opening: f64, pdf: f64, mut sample: impl FnMut(f32, f32) -> DVec3) -> f64 {
+    let [s, t] = across(axis);
+    let point = |u0: f32, u1: f32| {
+        let wi = sample(u0, u1);
+        // 1 − cos by the chord.
+        let below = 0.5 * (wi - axis).length_squared();
+        [(below / opening).min(1.0), (wi.dot(t).atan2(wi.dot(s)) / TAU).rem_euclid(1.0)]
+    };
+    let (share, p) = chi_squared(9, point, |_, _| pdf * TAU * opening);
+    assert!((share - 1.0).abs() < 1e-5, "{axis} {opening}: {share}");
+    p
+}
+
+fn p_of_sphere<R: Real>(to_center: DVec3, radius: f64) -> f64 {
+    let own = vector::<R>(to_center);
+    let distance = to_center.length();
+    let cos = if distance > radius { (1.0 - (radius / distance).powi(2)).sqrt() } else { -1.0 };
+    let pdf = emitter::sphere_pdf::<R>(own, R::from_f64(radius)).to_f64();
+    p_around(to_center.normalize_or(DVec3::Z), 1.0 - cos, pdf, |u0, u1| {
+        let [u0, u1] = [u0, u1].map(R::from_f32);
+        double::<R>(emitter::sample_sphere::<R>(own, R::from_f64(radius), u0, u1).wi)
+    })
+}
+
+#[test]
+fn l07_directions_to_spheres_are_even_over_what_is_seen_of_them() {
+    let places = [
+        (DVec3::new(0.3, -0.2, 4.0), 0.5),
+        (DVec3::new(-3.0, 2.0, 1.0), 3.5),
+        (DVec3::new(1.0, 1.0, -1.0), 1.7),
+        (DVec3::new(0.2, 0.1, -0.3), 1.0),
+        (DVec3::ZERO, 2.0),
+    ];
+    for (to_center, radius) in places {
+        let (single, double) = (p_of_sphere::<f32>(to_center, radius), p_of_sphere::<f64>(to_center, radius));
+        assert!(single.min(double) > least_p(2 * places.len()), "{to_center}: {single:e} {double:e}");
+    }
+}
+
+fn p_of_sun<R: Real>(axis: DVec3, half_angle: f64) -> f64 {
+    let (own, opening) = (vector::<R>(axis), emitter::opening_of_angle(R::from_f64(half_angle)));
+    let pdf = warp::uniform_cone_pdf(opening).to_f64();
+    p_around(double::<R>(own), 1.0 - half_angle.cos(), pdf, |u0, u1| {
+        double::<R>(emitter::sample_distant_disk::<R>(own, opening, R::from_f32(u0), R::from_f32(u1)))
+    })
+}
+
+#[test]
+fn l07_directions_to_suns_are_even_over_their_disk() {
+    let axis = DVec3::new(0.48, -0.6, 0.64);
+    for half_angle in [0.005, 0.1, 1.2] {
+        let (single, double) = (p_of_sun::<f32>(axis, half_angle), p_of_sun::<f64>(axis, half_angle));
+        assert!(single.min(double) > least_p(6), "{half_angle}: {single:e} {double:e}");
     }
 }
 
@@ -45,13 +110,13 @@ fn triangles_are_uniform_by_area() {
         let (b0, b1) = (f64::from(b0), f64::from(b1));
         [1.0 - (1.0 - b0).powi(2), (b1 / (1.0 - b0).max(1e-12)).min(1.0)]
     };
-    let (share, p) = support::chi_squared(5, sample, |_, _| 1.0);
+    let (share, p) = chi_squared(5, sample, |_, _| 1.0);
     assert!((share - 1.0).abs() < 1e-9 && p > 1e-3, "{share} {p:e}");
 }
 
 #[test]
 fn l09_triangles_at_the_ends() {
-    for (u0, u1) in support::pairs_of_ends() {
+    for (u0, u1) in pairs_of_ends() {
         let (b0, b1) = warp::uniform_triangle(u0, u1);
         assert!(b0 >= 0.0 && b1 >= 0.0 && b0 + b1 <= 1.0, "{u0} {u1}: {b0} {b1}");
     }
@@ -84,8 +149,7 @@ fn sampled_directions_meet_the_sphere_where_they_say() {
     for k in 0..100_000 {
         let radius = f64::from(random.log_between(1e-3, 1e3));
         let to_center = random.direction().as_dvec3() * radius * f64::from(random.log_between(1e-2, 1e3));
-        let (u0, u1) =
-            support::pairs_of_ends().nth(k).unwrap_or_else(|| (random.uniform(), random.uniform()));
+        let (u0, u1) = pairs_of_ends().nth(k).unwrap_or_else(|| (random.uniform(), random.uniform()));
         let towards = emitter::sample_sphere::<f64>(to_center, radius, u0.into(), u1.into());
         let hit = towards.wi * towards.distance;
         let off = (hit - to_center).length() / radius - 1.0;

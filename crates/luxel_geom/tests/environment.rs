@@ -1,15 +1,13 @@
 //! Maps of the surroundings: directions are drawn with the density that is stated, wherever light comes from has a
 //! density, and hard maps are sampled too (robustness.md L19).
 #![allow(clippy::unwrap_used)]
-mod support;
-
 use core::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use luxel_geom::Real;
 use luxel_geom::environment::{EnvironmentMap, table};
-use luxel_testkit::Random;
-use support::{chi_squared, least_p, pairs_of_ends};
+use luxel_testkit::pearson::{chi_squared, least_p};
+use luxel_testkit::{Random, pairs_of_ends};
 
 /// A map and what it is called.
 struct Case {

@@ -1,10 +1,9 @@
 //! GGX: its densities and its sampler against quadrature, reciprocity, grazing angles (robustness.md L06–L09).
 #![allow(clippy::unwrap_used)]
-mod support;
-
 use glam::{DVec3, Vec3};
 use luxel_geom::{Real, Vector, microfacet as ggx, optics};
-use luxel_testkit::Random;
+use luxel_testkit::pearson::{chi_squared, least_p};
+use luxel_testkit::{ENDS, Random, pairs_of_ends};
 
 const ALPHAS: [f64; 5] = [0.001, 0.01, 0.1, 0.5, 1.0];
 const DEGREES: [f64; 5] = [0.0, 30.0, 60.0, 85.0, 89.9];
@@ -74,14 +73,14 @@ fn p_of_sampler<R: Real>(alpha: f64, degrees: f64) -> f64 {
         let (h, jacobian) = from_square(a, b, alpha);
         ggx::visible_normal_pdf::<f64>(wo, h, alpha) * jacobian
     };
-    let (share, p) = support::chi_squared(7, sample, density);
+    let (share, p) = chi_squared(7, sample, density);
     assert!((share - 1.0).abs() < 2e-3, "{alpha} {degrees}: {share}");
     p
 }
 
 #[test]
 fn l07_visible_normals_follow_their_density() {
-    let least = support::least_p(2 * ALPHAS.len() * DEGREES.len());
+    let least = least_p(2 * ALPHAS.len() * DEGREES.len());
     for alpha in ALPHAS {
         for degrees in DEGREES {
             let (single, double) = (p_of_sampler::<f32>(alpha, degrees), p_of_sampler::<f64>(alpha, degrees));
@@ -154,7 +153,7 @@ fn two_directions_in_the_plane_are_no_division_by_zero() {
 #[test]
 fn l09_normals_at_the_ends() {
     let cosines = [1.0, 0.7, 1e-3, 1e-7, 0.0, -1e-7, -0.5, -1.0];
-    for (u0, u1) in support::pairs_of_ends() {
+    for (u0, u1) in pairs_of_ends() {
         for alpha in [1e-3f32, 0.1, 1.0] {
             for cos in cosines {
                 let wo = Vec3::new((1.0f32 - cos * cos).sqrt(), 0.0, cos);
@@ -162,7 +161,7 @@ fn l09_normals_at_the_ends() {
                 let case = format!("{u0} {u1} {alpha} {cos}: {h}");
                 assert!((h.length() - 1.0).abs() < 1e-6 && h.z > 0.0, "{case}");
                 // At the very rim of the visible normals rounding may turn one away: it is rejected.
-                if cos >= 0.0 && u1 < support::ENDS[5] {
+                if cos >= 0.0 && u1 < ENDS[5] {
                     assert!(wo.dot(h) > -2e-7, "{case}: {}", wo.dot(h));
                 }
             }

@@ -1,18 +1,13 @@
-//! Frames and warps: orthonormal everywhere, finite and inside their domain at the ends of every dimension
-//! (robustness.md L09, L10).
+//! Frames and warps: orthonormal everywhere, finite and inside their domain at the ends of every dimension, distributed as
+//! their densities say (robustness.md L07, L09, L10).
 #![allow(clippy::print_stdout)]
+use std::f64::consts::TAU;
+
 use glam::{DVec3, Vec3};
-use luxel_geom::{Vector, frame::Frame, warp};
-use luxel_testkit::Random;
+use luxel_geom::{Real, Vector, frame::Frame, warp};
+use luxel_testkit::pearson::{chi_squared, least_p};
+use luxel_testkit::{Random, pairs_of_ends};
 use proptest::prelude::*;
-
-/// The ends of `[0, 1)` in 24 bits, where samplers break, and the middle, where the disk's map divides.
-const ENDS: [f32; 6] =
-    [0.0, 1.0 / (1 << 24) as f32, 0.25, 0.5, 0.5 + 1.0 / (1 << 24) as f32, 1.0 - 1.0 / (1 << 24) as f32];
-
-fn pairs_of_ends() -> impl Iterator<Item = (f32, f32)> {
-    ENDS.into_iter().flat_map(|a| ENDS.map(|b| (a, b)))
-}
 
 /// How far three vectors are from orthonormal, besides the length of the normal itself.
 fn defect(frame: &Frame<f32>) -> f64 {
@@ -73,22 +68,75 @@ fn l09_no_direction_looks_below_its_surface() {
     }
 }
 
+/// Widths of the level hemisphere: the α of surfaces from all but smooth to rough.
+const WIDTHS: [f64; 4] = [1e-3, 0.03, 0.3, 1.0];
+
+/// A warp, and the points of the square at which its samples are counted.
+type Sampler = fn(f32, f32) -> [f64; 2];
+
+/// The azimuth in turns.
+fn turn(x: f64, y: f64) -> f64 {
+    (y.atan2(x) / TAU).rem_euclid(1.0)
+}
+
+fn double<R: Real>(v: R::Vec3) -> DVec3 {
+    DVec3::new(v.x().to_f64(), v.y().to_f64(), v.z().to_f64())
+}
+
+fn on_disk<R: Real>(u0: f32, u1: f32) -> [f64; 2] {
+    let (x, y) = warp::concentric_disk(R::from_f32(u0), R::from_f32(u1));
+    let (x, y) = (x.to_f64(), y.to_f64());
+    [(x * x + y * y).min(1.0), turn(x, y)]
+}
+
+fn on_hemisphere<R: Real>(u0: f32, u1: f32) -> [f64; 2] {
+    let v = double::<R>(warp::cosine_hemisphere::<R>(R::from_f32(u0), R::from_f32(u1)));
+    [(v.z * v.z).min(1.0), turn(v.x, v.y)]
+}
+
+fn on_sphere<R: Real>(u0: f32, u1: f32) -> [f64; 2] {
+    let v = double::<R>(warp::uniform_sphere::<R>(R::from_f32(u0), R::from_f32(u1)));
+    [0.5 + 0.5 * v.z, turn(v.x, v.y)]
+}
+
 #[test]
-fn the_hemisphere_is_cosine_weighted() {
-    let mut random = Random::new(3);
-    let count = 1_000_000;
-    let (mut cosines, mut squares, mut sum) = (0.0f64, 0.0f64, DVec3::ZERO);
-    for _ in 0..count {
-        let v = warp::cosine_hemisphere(random.uniform(), random.uniform()).as_dvec3();
-        cosines += v.z;
-        squares += v.z * v.z;
-        sum += v;
+fn l07_disk_hemisphere_and_sphere_are_as_even_as_they_say() {
+    let samplers: [(&str, [Sampler; 2]); 3] = [
+        ("disk by area", [on_disk::<f32>, on_disk::<f64>]),
+        ("hemisphere by cosine", [on_hemisphere::<f32>, on_hemisphere::<f64>]),
+        ("sphere by solid angle", [on_sphere::<f32>, on_sphere::<f64>]),
+    ];
+    for (name, samplers) in samplers {
+        for sampler in samplers {
+            let (_, p) = chi_squared(11, sampler, |_, _| 1.0);
+            assert!(p > least_p(6), "{name}: {p:e}");
+        }
     }
-    // Under cos θ / π the means are 2/3 and 1/2, with standard deviations of 0.24 and 0.29.
-    let n = f64::from(count);
-    assert!((cosines / n - 2.0 / 3.0).abs() < 5.0 * 0.24 / n.sqrt(), "{}", cosines / n);
-    assert!((squares / n - 0.5).abs() < 5.0 * 0.29 / n.sqrt(), "{}", squares / n);
-    assert!((sum / n).truncate().length() < 5.0 / n.sqrt());
+}
+
+/// p of the level hemisphere, counted by the logarithm of cosine and width.
+fn p_of_level<R: Real>(width: f64) -> f64 {
+    let range = (1.0 / width).ln_1p();
+    let sample = |u0: f32, u1: f32| {
+        let width = R::from_f64(width);
+        let v = double::<R>(warp::level_hemisphere::<R>(width, R::from_f32(u0), R::from_f32(u1)));
+        [((v.z / width.to_f64()).ln_1p() / range).min(1.0), turn(v.x, v.y)]
+    };
+    let density = |a: f64, _: f64| {
+        let cos = width * (a * range).exp_m1();
+        TAU * warp::level_hemisphere_pdf(width, cos) * range * (cos + width)
+    };
+    let (share, p) = chi_squared(13, sample, density);
+    assert!((share - 1.0).abs() < 1e-3, "{width}: {share}");
+    p
+}
+
+#[test]
+fn l07_the_level_hemisphere_follows_its_density() {
+    for width in WIDTHS {
+        let (single, double) = (p_of_level::<f32>(width), p_of_level::<f64>(width));
+        assert!(single.min(double) > least_p(2 * WIDTHS.len()), "{width}: {single:e} {double:e}");
+    }
 }
 
 proptest! {

@@ -1,5 +1,5 @@
 //! Triangles and spheres as lights. They shine on both sides.
-use luxel_flat::{FAR, LIGHT_SPHERE, LightRecord};
+use luxel_flat::{LIGHT_SPHERE, LightRecord};
 use luxel_geom::{Real, Vector, emitter, warp};
 
 use super::{LightSample, emission};
@@ -29,7 +29,7 @@ pub(super) fn sample_area_light<R: Real>(
         (offset, emitter::triangle_pdf::<R>(offset, normal), normal)
     };
     let distance = offset.length();
-    if distance <= R::ZERO || pdf >= R::from_f32(FAR) {
+    if distance <= R::ZERO || pdf >= R::FAR {
         return None;
     }
     let wi = offset * (R::ONE / distance);

@@ -1,5 +1,5 @@
 //! Whether a sampled light is visible. On the GPU a kernel of its own.
-use luxel_flat::{Counter, Counters, FAR, FlatScene, SHADOW_END};
+use luxel_flat::{Counter, Counters, FlatScene, SHADOW_END};
 use luxel_geom::{Exclude, Ray, Real, Vector};
 
 use super::LightSample;
@@ -25,7 +25,7 @@ pub fn is_visible<R: Real>(
 }
 
 fn shadow_ray<R: Real>(origin: R::Vec3, light: &LightSample<R>) -> Ray<R> {
-    if light.distance >= R::from_f32(FAR) {
+    if light.distance >= R::FAR {
         return Ray::new(origin, light.wi);
     }
     let t_max = R::from_f32(SHADOW_END);

@@ -4,7 +4,7 @@
 //! and a lobe is chosen by the share of the light that it is thought to carry, over what all lobes are. What follows are
 //! these quotients, from the albedo tables.
 use luxel_flat::{MATERIAL_PRINCIPLED, MATERIAL_THIN, MaterialRecord};
-use luxel_geom::albedo::{TABLES, lookup};
+use luxel_geom::albedo::{Facets, TABLES, lookup};
 use luxel_geom::{microfacet, optics, schlick, warp};
 
 /// Index of the clear coat.
@@ -100,12 +100,16 @@ impl<'a> Seen<'a> {
         if self.clear == 0.0 { 1.0 } else { 1.0 + (self.kept(self.cos) - self.glass_kept()).max(0.0) }
     }
 
-    /// Share that one scattering at clear microfacets keeps.
+    /// The least share that one scattering at clear microfacets keeps, whatever mixture their reflectance is.
     fn glass_kept(&self) -> f64 {
+        let kept = self.kept(self.cos);
         if self.is_smooth || self.record.flags & MATERIAL_THIN != 0 {
-            return self.kept(self.cos);
+            return kept;
         }
-        1.0 - lookup::glass_loss(&TABLES, self.cos, self.roughness, self.eta)
+        let of = |facets| 1.0 - lookup::glass_loss(&TABLES, facets, self.cos, self.roughness, self.eta);
+        let is_mixed = self.record.specular < 1.0 || self.record.specular_color != [1.0; 3];
+        let exact = of(Facets::Exact);
+        if is_mixed { Facets::ALL.into_iter().map(of).fold(kept, f64::min) } else { exact }
     }
 
     /// What meets microfacets is mirrored or passes, all of it at most; they are chosen by their albedos.
@@ -180,10 +184,14 @@ impl<'a> Seen<'a> {
         if self.clear == 0.0 || self.record.flags & MATERIAL_THIN != 0 {
             return conductor;
         }
-        let glass = |eta: f64| {
-            largest(lookup::glass_loss_average(&TABLES, r, eta), &|c| lookup::glass_loss(&TABLES, c, r, eta))
+        // The quotient of a mixture is at most the largest of what is mixed.
+        let glass = |(facets, eta): (Facets, f64)| {
+            let average = lookup::glass_loss_average(&TABLES, facets, r, eta);
+            largest(average, &|c| lookup::glass_loss(&TABLES, facets, c, r, eta))
         };
-        conductor.max(glass(self.eta)).max(glass(1.0 / self.eta))
+        let sides = [self.eta, 1.0 / self.eta];
+        let all = Facets::ALL.into_iter().flat_map(|facets| sides.map(|eta| (facets, eta)));
+        all.map(glass).fold(conductor, f64::max)
     }
 
     fn coat_albedo(&self, cos: f64) -> f64 {

@@ -88,6 +88,11 @@ pub(crate) fn lossless(roughness: f32) -> Vec<(&'static str, MaterialRecord)> {
         ("glass of index 10", glass(roughness, 10.0)),
         ("glass of infinite index", glass(roughness, INFINITE_INDEX)),
         ("thin glass", thin(roughness)),
+        ("glass without reflection", MaterialRecord { specular: 0.0, ..glass(roughness, 1.5) }),
+        ("weak glass", tinted([1.0, 0.5, 0.0], MaterialRecord { specular: 0.5, ..glass(roughness, 1.5) })),
+        ("tinted glass of index 10", tinted([1.0, 0.5, 0.0], glass(roughness, 10.0))),
+        ("glass of stronger reflection", tinted([2.0, 5.0, 30.0], glass(roughness, 1.33))),
+        ("weak thin glass", tinted([1.0, 0.5, 0.0], MaterialRecord { specular: 0.5, ..thin(roughness) })),
     ]
 }
 
@@ -101,10 +106,6 @@ pub(crate) fn layered(roughness: f32) -> Vec<(&'static str, MaterialRecord)> {
         ("coated glass", coated(glass(roughness, 1.5), 1.0, 0.3)),
         ("coated thin", coated(thin(roughness), 1.0, 0.3)),
         ("half clear", MaterialRecord { transmission: 0.5, ..principled(roughness) }),
-        (
-            "weak glass",
-            MaterialRecord { specular: 0.5, specular_color: [1.0, 0.5, 0.0], ..glass(roughness, 1.5) },
-        ),
         ("mixed", mixed(roughness)),
         ("white mixed", MaterialRecord { color: [1.0; 3], ..mixed(roughness) }),
     ]

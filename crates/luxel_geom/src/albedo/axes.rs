@@ -1,13 +1,20 @@
 //! The axes of the albedo tables: which cosine, roughness and index stands at a place in `[0, 1]`, and back.
 //!
 //! A lobe changes fastest where the cosine is about α, so the cosine's axis gives half of its length to cosines up to
-//! some 4α. Near η = 1 Fresnel's equations change with the root of η − 1, so the axis of the index works on
+//! some 4α. Seen from inside glass the loss has a ridge where total reflection begins; there the other half of the axis
+//! lies, and the ridge at nearly one place for all indices, so that it is kept between them. Near η = 1 Fresnel's equations change with the root of η − 1, so the axis of the index works on
 //! s = √((η − 1) / (η + 1)), the root of the amplitude that is reflected head-on. It reaches from s = 0 to an infinite
 //! index at s = 1, and is dense at both ends; seen from the denser side, total reflection wants more places.
 use crate::{Real, microfacet};
 
 /// Place of the index 1 among those of glass: denser sides lie below, so many of the intervals are theirs.
 pub const GLASS_MIDDLE: f64 = 44.0 / 64.0;
+/// Share of the cosines' axis that lies about the critical angle.
+const CRITICAL_SHARE: f64 = 0.5;
+/// Critical cosine at which it has half of that share, but for a tenth: there is no such angle at an index of 1.
+const CRITICAL_ONSET: f64 = 0.1;
+/// Half width of that part of the axis, in widths of the lobe.
+const CRITICAL_WIDTH: f64 = 3.0;
 /// Least 1 − s² that a place stands for: in the tables an infinite index is finite.
 const LEAST_GAP: f64 = 1e-18;
 
@@ -44,6 +51,41 @@ pub fn cosine_at<R: Real>(place: R, roughness: R) -> R {
     let width = R::from_f64(2.0) * roughness.clamped(least_roughness(), R::ONE);
     let root = place * width / (R::ONE + width - place);
     root * root
+}
+
+/// Place of a cosine under which rough glass of relative index `eta` is seen.
+#[inline]
+pub fn glass_cosine_place<R: Real>(cos: R, roughness: R, eta: R) -> R {
+    let place = cosine_place(cos, roughness);
+    if eta >= R::ONE {
+        return place;
+    }
+    let critical = ((R::ONE - eta) * (R::ONE + eta)).sqrt();
+    let onset = R::from_f64(CRITICAL_ONSET);
+    let share = R::from_f64(CRITICAL_SHARE) * critical * (R::ONE + onset) / (critical + onset);
+    let alpha = microfacet::alpha_of_roughness(roughness.clamped(least_roughness(), R::ONE));
+    // The cosine changes by the sine, which is η, and by half of the square of the angle.
+    let width = R::from_f64(CRITICAL_WIDTH) * alpha * (eta + R::from_f64(0.5) * alpha);
+    let from_critical = |cos: R| {
+        let y = (cos - critical) / width;
+        y / (R::ONE + y.abs())
+    };
+    let (low, high) = (from_critical(R::ZERO), from_critical(R::ONE));
+    let about = (from_critical(cos.clamped(R::ZERO, R::ONE)) - low) / (high - low);
+    place + (about - place) * share
+}
+
+/// The cosine at a place of [`glass_cosine_place`], by bisection.
+pub fn glass_cosine_at<R: Real>(place: R, roughness: R, eta: R) -> R {
+    let (mut low, mut high) = (R::ZERO, R::ONE);
+    if place <= R::ZERO || place >= R::ONE {
+        return place.clamped(low, high);
+    }
+    for _ in 0..60 {
+        let middle = (low + high) * R::from_f64(0.5);
+        if glass_cosine_place(middle, roughness, eta) < place { low = middle } else { high = middle }
+    }
+    low
 }
 
 /// Place of an index as seen from the thinner side, which is at least 1: s / (s + √(1 − s)).

@@ -2,7 +2,7 @@
 //!
 //! `tables` is [`super::TABLES`] or a copy of it; entries that a shorter slice lacks read as zero. `cos` is the cosine of
 //! the direction and the normal in `[0, 1]`, `roughness` the root of α; both are held inside their axes.
-use super::axes;
+use super::{Facets, axes};
 use crate::{Real, optics, schlick};
 
 /// Two neighbouring entries of an axis, and how far the place lies between them.
@@ -117,16 +117,21 @@ pub fn head_on_transmittance<R: Real>(eta: R) -> R {
 /// Share of the light from a direction that single scattering at rough glass loses, reflection and transmission taken
 /// together; `eta` is the index on the far side over the near side.
 #[inline]
-pub fn glass_loss<R: Real>(tables: &[f32], cos: R, roughness: R, eta: R) -> R {
+pub fn glass_loss<R: Real>(tables: &[f32], facets: Facets, cos: R, roughness: R, eta: R) -> R {
+    let table = facets as u32 * super::GLASS_INDICES;
+    let sizes = [super::ROUGHNESSES, super::COSINES];
+    let places = [axes::roughness_place(roughness), axes::glass_cosine_place(cos, roughness, eta)];
     Between::at(axes::glass_index_place(eta), super::GLASS_INDICES)
-        .mix(|k| directional(tables, super::GLASS + k * super::PLANE, cos, roughness))
+        .mix(|k| plane(tables, super::GLASS + (table + k) * super::PLANE, sizes, places))
 }
 
 /// [`glass_loss`] averaged over cosine-weighted directions.
 #[inline]
-pub fn glass_loss_average<R: Real>(tables: &[f32], roughness: R, eta: R) -> R {
-    Between::at(axes::glass_index_place(eta), super::GLASS_INDICES)
-        .mix(|k| average_loss(tables, super::GLASS_AVERAGES + k * super::AVERAGE_ROUGHNESSES, roughness))
+pub fn glass_loss_average<R: Real>(tables: &[f32], facets: Facets, roughness: R, eta: R) -> R {
+    let table = facets as u32 * super::GLASS_INDICES;
+    Between::at(axes::glass_index_place(eta), super::GLASS_INDICES).mix(|k| {
+        average_loss(tables, super::GLASS_AVERAGES + (table + k) * super::AVERAGE_ROUGHNESSES, roughness)
+    })
 }
 
 /// The lobe that gives lost light back (Kulla and Conty 2017): loss(cos o) · loss(cos i) / (π · average loss), in 1/sr.

@@ -82,6 +82,7 @@ fn from_ron<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, SceneEr
         column: span.start.col,
         message: match code {
             ron::Error::IntegerOutOfBounds => "the number is out of the range of this field".to_owned(),
+            ron::Error::ExceededRecursionLimit => "values are nested too deeply".to_owned(),
             other => other.to_string(),
         },
     })

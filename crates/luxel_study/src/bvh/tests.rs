@@ -1,9 +1,6 @@
 //! The reader of lists, against damaged records of this study.
-use std::fs;
-
-use super::read_runs;
 use super::record::{Run, example};
-use crate::kit::tests::assert_refused;
+use crate::kit::tests::{assert_refused, read};
 
 #[test]
 fn a_damaged_line_is_one_error_with_file_and_line() {
@@ -27,11 +24,9 @@ fn a_damaged_line_is_one_error_with_file_and_line() {
 
 #[test]
 fn a_list_of_the_other_study_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("runs.jsonl");
-    fs::write(&path, serde_json::to_string(&crate::octree::example()).unwrap()).unwrap();
-    let message = read_runs(&path).unwrap_err().to_string();
+    let theirs = serde_json::to_string(&crate::octree::example()).unwrap();
+    let message = read::<Run>(&theirs).unwrap_err();
     assert!(message.contains("study 'octree': not of this study"), "{message}");
-    fs::write(&path, serde_json::to_string(&example()).unwrap()).unwrap();
-    assert!(crate::octree::read_runs(&path).unwrap_err().to_string().contains("study 'bvh'"));
+    let ours = serde_json::to_string(&example()).unwrap();
+    assert!(read::<crate::octree::Run>(&ours).unwrap_err().contains("study 'bvh'"));
 }

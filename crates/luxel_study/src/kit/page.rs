@@ -134,8 +134,8 @@ pub(crate) fn judgement<R: Record>(runs: &Runs<'_, R>, repeats: &str) -> Markup 
         p {
             "A claim is taken apart into checks: it holds if all do that can be told, holds partly if some do, and \
              cannot be told if more than half lie within the noise. A change is major or noticeable if the ratio of \
-             two speeds is above " (MAJOR) "; less is alike. A best setting is given with those that cannot be told from \
-             it. Claims that begin with “Expected” are not the report's."
+             two speeds is above " (MAJOR) "; less is alike. Best are the settings than which no other is known to be \
+             faster. Claims that begin with “Expected” are not the report's."
         }
     }
 }

@@ -4,7 +4,7 @@
 //! Runs are appended to `runs.jsonl.part` as they are measured; a lock keeps other studies from it. When the study is
 //! over, page and table are written beside their places, and then all take their names. What an earlier study left,
 //! or one that was cut short, is kept as `runs.previous-1.jsonl` and so on. Files that are of no study stay as they
-//! are: they are an error.
+//! are: they are an error. A study that comes to nothing, be it for want of space, leaves nothing.
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Write as _};
 use std::marker::PhantomData;
@@ -27,7 +27,7 @@ const TABLE_BEGIN: &str = "study,format,sweep,";
 /// Bytes at the beginning of a file that say what it is: more than the head of a table.
 const BEGIN_BYTES: u64 = 4000;
 
-/// A folder that a study is being written to.
+/// A folder that a study is being written to. It goes again in the end if it was made for the study and nothing is in it.
 pub(super) struct Folder<S: Study> {
     path: PathBuf,
     /// What of its path was missing, the innermost first.
@@ -108,7 +108,8 @@ impl<S: Study> Folder<S> {
     fn beside(&self, name: &str, bytes: &[u8]) -> Result<NamedTempFile, StudyError> {
         let write = || {
             let mut file = new_file(&self.path)?;
-            file.write_all(bytes)?;
+            // Through the file itself: an error of the other names a file that nobody has heard of.
+            file.as_file_mut().write_all(bytes)?;
             file.as_file().sync_all()?;
             Ok(file)
         };
@@ -138,6 +139,24 @@ impl<S: Study> Folder<S> {
     }
 }
 
+impl<S: Study> Drop for Folder<S> {
+    fn drop(&mut self) {
+        for made in &self.made {
+            // A folder that holds something stays.
+            _ = fs::remove_dir(made);
+        }
+    }
+}
+
+/// Appends bytes; a file that cannot take all of them is as long as before.
+fn append_whole(file: &mut File, bytes: &[u8]) -> io::Result<()> {
+    let before = file.metadata()?.len();
+    file.write_all(bytes).inspect_err(|_| {
+        // What the disk refuses now as well stays as the end that was cut off.
+        _ = file.set_len(before);
+    })
+}
+
 /// A file that others may read as far as the user's umask allows; temporary files are private by default.
 fn new_file(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
@@ -162,22 +181,16 @@ pub(super) struct RunsFile<'a, S: Study> {
 }
 
 impl<S: Study> RunsFile<'_, S> {
-    /// Appends a run.
+    /// Appends a run, all of it or nothing.
     pub(super) fn append(&mut self, run: &S::Run) -> Result<(), StudyError> {
         let line = serde_json::to_string(run)? + "\n";
-        self.file.write_all(line.as_bytes()).map_err(|source| self.folder.error(PART, source))
+        append_whole(&mut self.file, line.as_bytes()).map_err(|source| self.folder.error(PART, source))
     }
 
-    /// Removes it, and the folder if it was made for it: nothing was measured.
+    /// Removes it: nothing was measured.
     pub(super) fn discard(self) -> Result<(), StudyError> {
-        let Self { folder, file } = self;
-        fs::remove_file(folder.path.join(PART)).map_err(|source| folder.error(PART, source))?;
-        drop(file);
-        for made in &folder.made {
-            // What somebody has put something into in the meantime stays.
-            _ = fs::remove_dir(made);
-        }
-        Ok(())
+        let Self { folder, file: _open } = self;
+        fs::remove_file(folder.path.join(PART)).map_err(|source| folder.error(PART, source))
     }
 
     /// Writes page and table, and gives all three their names.
@@ -265,10 +278,13 @@ mod tests {
         let open = || Folder::<OctreeStudy>::open(&folder.path().join("new/out")).unwrap();
         open().begin_runs().unwrap().discard().unwrap();
         assert!(names(folder.path()).is_empty());
+        drop(open());
+        assert!(names(folder.path()).is_empty());
         let store = open();
         let file = store.begin_runs().unwrap();
         fs::write(folder.path().join("new/notes"), "").unwrap();
         file.discard().unwrap();
+        drop(store);
         assert_eq!(names(&folder.path().join("new")), ["notes"]);
     }
 

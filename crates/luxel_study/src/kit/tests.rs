@@ -39,13 +39,25 @@ pub(crate) fn assert_refused<R: Record>(good: &R, own: &[Damage<'_>]) {
         assert!(message.contains("runs.jsonl:3: ") && message.contains(part), "{message}");
         assert!(!message.contains("line"), "{message}");
     }
+    every_number_is_checked::<R>(&good);
     assert!(read::<R>("\n").unwrap_err().contains("no run"));
     let twice = read::<R>(&format!("{good}\n\n{good}\n")).unwrap_err();
     assert!(twice.ends_with("runs.jsonl:3: the same run as on line 1"), "{twice}");
 }
 
+/// Checks that no number of a record may be below 0.
+fn every_number_is_checked<R: Record>(good: &str) {
+    let fields: serde_json::Map<String, serde_json::Value> = serde_json::from_str(good).unwrap();
+    for (field, _) in fields.iter().filter(|(_, value)| value.is_number()) {
+        let mut damaged = fields.clone();
+        damaged.insert(field.clone(), (-1.5).into());
+        let message = read::<R>(&serde_json::to_string(&damaged).unwrap());
+        assert!(message.is_err(), "{field} may be -1.5");
+    }
+}
+
 /// The number of runs in a list, or why there is none.
-fn read<R: Record>(text: &str) -> Result<usize, String> {
+pub(crate) fn read<R: Record>(text: &str) -> Result<usize, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("runs.jsonl");
     fs::write(&path, text).unwrap();

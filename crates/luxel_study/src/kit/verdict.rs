@@ -59,11 +59,7 @@ impl Noise {
 
     /// Do they differ by no more than [`MAJOR`]?
     pub(crate) fn alike(self, ratio: f64) -> Case {
-        match self.much_faster(ratio.max(1.0 / ratio)) {
-            Case::Yes => Case::No,
-            Case::No => Case::Yes,
-            Case::Open => Case::Open,
-        }
+        self.much_faster(ratio.max(1.0 / ratio)).opposite()
     }
 }
 
@@ -74,6 +70,30 @@ pub(crate) enum Case {
     No,
     /// Within the noise.
     Open,
+}
+
+impl Case {
+    /// Whether every one of several holds: not if one does not, open if one of the others is. `None` of none.
+    pub(crate) fn all(cases: impl IntoIterator<Item = Self>) -> Option<Self> {
+        cases.into_iter().reduce(|a, b| match (a, b) {
+            (Self::No, _) | (_, Self::No) => Self::No,
+            (Self::Open, _) | (_, Self::Open) => Self::Open,
+            (Self::Yes, Self::Yes) => Self::Yes,
+        })
+    }
+
+    /// Whether one of several holds: if one does, open if one of the others is. `None` of none.
+    pub(crate) fn any(cases: impl IntoIterator<Item = Self>) -> Option<Self> {
+        Self::all(cases.into_iter().map(Self::opposite)).map(Self::opposite)
+    }
+
+    fn opposite(self) -> Self {
+        match self {
+            Self::Yes => Self::No,
+            Self::No => Self::Yes,
+            Self::Open => Self::Open,
+        }
+    }
 }
 
 impl From<bool> for Case {
@@ -184,13 +204,24 @@ pub(crate) fn crossover_text(noise: impl Fn(u32) -> Noise, ratios: &[AtCount], t
     }
 }
 
-/// Whether a quantity grows along its pairs: its end is above its start, and it never falls, by the noise between two
-/// counts.
-pub(crate) fn growth(noise: impl Fn(u32, u32) -> Noise, pairs: &[AtCount]) -> Vec<Case> {
-    let [first, .., last] = pairs else { return Vec::new() };
+/// Every two of some values, the earlier one first.
+pub(crate) fn pairs<T>(values: &[T]) -> impl Iterator<Item = (&T, &T)> {
+    values.iter().enumerate().flat_map(|(i, late)| values[..i].iter().map(move |early| (early, late)))
+}
+
+/// Whether speeds differ by no more than [`MAJOR`], each from every other by the noise of these two: the fastest and the
+/// slowest alone may be noisy where others are not. `None` of fewer than two.
+pub(crate) fn all_alike<T: Copy>(noise: impl Fn(T, T) -> Noise, speeds: &[(T, f64)]) -> Option<Case> {
+    Case::all(pairs(speeds).map(|(a, b)| noise(a.0, b.0).alike(a.1 / b.1)))
+}
+
+/// Whether a quantity grows along its pairs: its end is above its start, and it never falls, at once or in the long run,
+/// by the noise between two counts.
+pub(crate) fn growth(noise: impl Fn(u32, u32) -> Noise, values: &[AtCount]) -> Vec<Case> {
+    let [first, .., last] = values else { return Vec::new() };
     let grown = |early: &AtCount, late: &AtCount| (noise(early.0, late.0), late.1 / early.1);
     let is_fall = |(noise, ratio): (Noise, f64)| noise.order(ratio) == Order::Slower;
-    let falls = pairs.windows(2).any(|pair| is_fall(grown(&pair[0], &pair[1])));
+    let falls = pairs(values).any(|(early, late)| is_fall(grown(early, late)));
     let (noise, ratio) = grown(first, last);
     let mut cases = vec![noise.faster(ratio)];
     cases.extend(falls.then_some(Case::No));
@@ -275,6 +306,24 @@ mod tests {
         assert_eq!(growth(|_, _| NOISE, &[(1, 1.0), (2, 1.01)]), [Case::Open]);
         assert_eq!(growth(|_, _| NOISE, &[(1, 2.0), (2, 1.0)]), [Case::No, Case::No]);
         assert!(growth(|_, _| NOISE, &[(1, 1.0)]).is_empty());
+    }
+
+    #[test]
+    fn what_lies_between_the_extremes_is_judged_by_its_own_noise() {
+        // The second of three is noisy.
+        let noise = |a: u32, b: u32| if [a, b].contains(&2) { Noise(3.0) } else { NOISE };
+        use Case::{No, Open, Yes};
+        let alike = |speeds: [f64; 3]| all_alike(noise, &[(1, speeds[0]), (2, speeds[1]), (3, speeds[2])]);
+        assert_eq!([alike([1.0, 3.0, 1.5]), alike([1.0, 3.0, 1.05])], [Some(No), Some(Open)]);
+        assert_eq!(alike([1.0, 1.04, 1.08]), Some(Open), "the noisy one lies between those that are alike");
+        assert_eq!(all_alike(|_, _| NOISE, &[(1, 1.0), (2, 1.04), (3, 1.08)]), Some(Yes));
+        assert_eq!(all_alike(noise, &[(1, 1.0)]), None);
+        assert_eq!(growth(noise, &[(1, 4.0), (2, 3.9), (3, 3.0), (4, 9.0)]), [Yes, No]);
+        assert_eq!(
+            [Case::any([No, Open, Yes]), Case::any([No, Open]), Case::any([No])],
+            [Some(Yes), Some(Open), Some(No)]
+        );
+        assert_eq!((Case::any([]), Case::all([])), (None, None));
     }
 
     #[test]

@@ -18,22 +18,24 @@ pub(super) struct Dielectric<R: Real> {
     /// Index on the far side over that on the near side.
     pub(super) eta: R,
     /// Share of the exact reflectance.
-    pub(super) exact: R::Vec3,
+    exact: R::Vec3,
     /// Share of Schlick's weight; what is left of 1 is that of 1.
     rim: R::Vec3,
     /// Factor on all of it.
     strength: R,
 }
 
-/// Means of what reflects over a lobe.
+/// Means over a lobe of something that is linear in the reflectance: what is reflected, or what is lost.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Means<R: Real> {
-    /// Of 1.
+    /// For a reflectance of 1.
     pub(super) one: R,
-    /// Of the exact reflectance.
+    /// For the exact one.
     pub(super) exact: R,
-    /// Of Schlick's weight.
+    /// For Schlick's weight.
     pub(super) rim: R,
+    /// For a reflectance of 0.
+    pub(super) zero: R,
 }
 
 impl<R: Real> Dielectric<R> {
@@ -59,13 +61,19 @@ impl<R: Real> Dielectric<R> {
     /// The means over a mirror. Schlick's weight is that of the angle on the thinner side.
     pub(super) fn smooth_means(&self, cos: R, exact: Fresnel<R>) -> Means<R> {
         let outer = if self.eta < R::ONE { exact.cos_t } else { cos };
-        Means { one: R::ONE, exact: exact.reflectance, rim: schlick::schlick_weight(outer) }
+        Means { one: R::ONE, exact: exact.reflectance, rim: schlick::schlick_weight(outer), zero: R::ZERO }
     }
 
-    /// The mean of [`Self::reflectance`] over a lobe.
+    /// True if the reflectance is the exact one in every channel.
+    pub(super) fn is_exact(&self) -> bool {
+        self.strength == R::ONE && self.exact == R::Vec3::splat(R::ONE)
+    }
+
+    /// The mean over a lobe for [`Self::reflectance`].
     pub(super) fn mean(&self, means: Means<R>) -> R::Vec3 {
         let one = R::Vec3::splat(R::ONE) - self.exact - self.rim;
-        (self.exact * means.exact + self.rim * means.rim + one * means.one) * self.strength
+        let reflecting = self.exact * means.exact + self.rim * means.rim + one * means.one;
+        reflecting * self.strength + R::Vec3::splat(means.zero * (R::ONE - self.strength))
     }
 }
 

@@ -8,7 +8,7 @@
 //! - the microfacets under a coat of albedo C by 1 − max(C(o), C(i)): exact for a mirror, and never too much;
 //! - light that single scattering between microfacets loses comes back by Kulla and Conty's lobe (2017).
 use luxel_flat::MATERIAL_THIN;
-use luxel_geom::albedo::lookup;
+use luxel_geom::albedo::{Facets, lookup};
 use luxel_geom::{Real, Vector, microfacet, optics, schlick};
 
 use super::super::Bsdf;
@@ -61,7 +61,7 @@ pub(super) struct Albedos<R: Real> {
     /// Share lost by single scattering if the microfacets reflect all.
     pub(super) loss: R,
     /// Share lost by single scattering at glass.
-    pub(super) glass_loss: R,
+    pub(super) glass_loss: R::Vec3,
     /// Share that the dielectric microfacets mirror.
     pub(super) mirrored: R::Vec3,
     /// Share that the coat mirrors.
@@ -96,6 +96,14 @@ impl<'a, R: Real> Layers<'a, R> {
         }
     }
 
+    /// Square of the relative index if a direction is across the border of a body, else 1.
+    pub(super) fn eta_scale(&self, wi: R::Vec3) -> R {
+        if wi.z() >= R::ZERO || self.is_thin {
+            return R::ONE;
+        }
+        self.dielectric.eta * self.dielectric.eta
+    }
+
     /// Reflectance of a microfacet, metal and dielectric together.
     pub(super) fn reflectance(&self, cos: R) -> R::Vec3 {
         let dielectric = self.dielectric.reflectance(cos) * (R::ONE - self.metal);
@@ -114,7 +122,7 @@ impl<'a, R: Real> Layers<'a, R> {
     /// The albedos under a cosine in `[0, 1]`, on the side that the surface is seen from.
     pub(super) fn albedos(&self, cos: R) -> Albedos<R> {
         let (loss, glass_loss) = if self.is_smooth {
-            (R::ZERO, R::ZERO)
+            (R::ZERO, R::Vec3::splat(R::ZERO))
         } else {
             (
                 lookup::conductor_loss(self.tables, cos, self.bsdf.roughness),
@@ -130,28 +138,46 @@ impl<'a, R: Real> Layers<'a, R> {
         let means = if self.is_smooth || eta < R::ONE {
             let Means { exact, rim, .. } =
                 self.dielectric.smooth_means(cos, optics::fresnel_dielectric(cos, eta));
-            Means { one, exact: exact * one, rim: rim * one }
+            Means { one, exact: exact * one, rim: rim * one, zero: R::ZERO }
         } else {
             let exact = lookup::mean_reflectance(self.tables, cos, roughness, eta) * one;
-            Means { one, exact, rim: lookup::rim_albedo(self.tables, cos, roughness) }
+            Means { one, exact, rim: lookup::rim_albedo(self.tables, cos, roughness), zero: R::ZERO }
         };
         self.dielectric.mean(means)
     }
 
     /// Share that single scattering at the clear part loses, for a direction on the side from which the index is `eta`.
-    fn glass_loss(&self, cos: R, eta: R) -> R {
+    fn glass_loss(&self, cos: R, eta: R) -> R::Vec3 {
         if self.clear == R::ZERO {
-            R::ZERO
-        } else if self.is_thin {
-            lookup::conductor_loss(self.tables, cos, self.bsdf.roughness)
-        } else {
-            lookup::glass_loss(self.tables, cos, self.bsdf.roughness, eta)
+            return R::Vec3::splat(R::ZERO);
         }
+        let (tables, roughness) = (self.tables, self.bsdf.roughness);
+        let all = || lookup::conductor_loss(tables, cos, roughness);
+        self.mixed_loss(all, |facets| lookup::glass_loss(tables, facets, cos, roughness, eta))
     }
 
     /// Loss of a clear, rough surface for a direction on the far side.
-    pub(super) fn far_glass_loss(&self, cos: R) -> R {
+    pub(super) fn far_glass_loss(&self, cos: R) -> R::Vec3 {
         self.glass_loss(cos, R::ONE / self.dielectric.eta)
+    }
+
+    fn glass_loss_average(&self, eta: R) -> R::Vec3 {
+        let (tables, roughness) = (self.tables, self.bsdf.roughness);
+        let all = || lookup::conductor_loss_average(tables, roughness);
+        self.mixed_loss(all, |facets| lookup::glass_loss_average(tables, facets, roughness, eta))
+    }
+
+    /// What the clear part loses, if it loses `all` as a conductor and as `of` says with other microfacets. A sheet mirrors
+    /// what it lets pass, so it loses what a conductor does.
+    fn mixed_loss(&self, all: impl FnOnce() -> R, of: impl Fn(Facets) -> R) -> R::Vec3 {
+        if self.is_thin {
+            return R::Vec3::splat(all());
+        }
+        let exact = of(Facets::Exact);
+        if self.dielectric.is_exact() {
+            return R::Vec3::splat(exact);
+        }
+        self.dielectric.mean(Means { one: all(), exact, rim: of(Facets::Rim), zero: of(Facets::Clear) })
     }
 
     /// Albedo of the coat itself, its strength left out.
@@ -184,22 +210,16 @@ impl<'a, R: Real> Layers<'a, R> {
             if self.is_smooth { R::ZERO } else { lookup::conductor_loss_average(self.tables, roughness) };
         let one = R::ONE - loss;
         let exact = one - lookup::coat_passing_average(self.tables, roughness, self.dielectric.eta);
-        let means = Means { one, exact, rim: lookup::rim_albedo_average(self.tables, roughness) };
+        let rim = lookup::rim_albedo_average(self.tables, roughness);
+        let means = Means { one, exact, rim, zero: R::ZERO };
         R::Vec3::splat(R::ONE) - self.dielectric.mean(means)
     }
 
     /// How the light comes back that single scattering loses.
     pub(super) fn returns(&self) -> Returns<R> {
         let black = R::Vec3::splat(R::ZERO);
-        let zero = R::ZERO;
-        let mut returns = Returns {
-            metal: black,
-            metal_average: zero,
-            through: black,
-            given_back: black,
-            near: zero,
-            far: zero,
-        };
+        let mut returns =
+            Returns { metal: black, metal_average: R::ZERO, through: black, near: black, far: black };
         if self.is_smooth {
             return returns;
         }
@@ -223,25 +243,22 @@ impl<'a, R: Real> Layers<'a, R> {
             one: R::ONE,
             exact: R::ONE - lookup::coat_passing_average(self.tables, R::ZERO, from_thinner),
             rim: lookup::rim_albedo_average(self.tables, R::ZERO),
+            zero: R::ZERO,
         };
         // η and 1/η have one reflectance head-on, so the means on both sides are tinted alike.
         returns.through = R::Vec3::splat(R::ONE) - self.dielectric.mean(means);
+        returns.near = self.glass_loss_average(eta);
+        returns.far = self.glass_loss_average(R::ONE / eta);
         if self.is_thin {
-            returns.near = lookup::conductor_loss_average(self.tables, self.bsdf.roughness);
-            returns.far = returns.near;
-            returns.given_back = R::Vec3::splat(self.clear);
             return;
         }
-        returns.near = lookup::glass_loss_average(self.tables, self.bsdf.roughness, eta);
-        returns.far = lookup::glass_loss_average(self.tables, self.bsdf.roughness, R::ONE / eta);
         // Reciprocity across the border asks for equal near · through · index² on both sides.
-        let largest = returns.near.max(returns.far);
-        let balance = if largest > R::ZERO { returns.far / largest } else { R::ZERO };
         let spread = if is_denser_here { eta * eta } else { R::ONE };
-        returns.through = returns.through * (balance * spread);
-        // The loss is linear in the reflectance, and the table has that of its exact share; what the rest loses, of a weak
-        // or tinted reflection, stays lost.
-        returns.given_back = self.dielectric.exact * (self.bsdf.specular * self.clear);
+        let balance = returns.near.zip(returns.far, |near, far| {
+            let largest = near.max(far);
+            if largest > R::ZERO { far / largest * spread } else { R::ZERO }
+        });
+        returns.through = returns.through * balance;
     }
 }
 
@@ -254,12 +271,15 @@ pub(super) struct Returns<R: Real> {
     pub(super) metal_average: R,
     /// Share of the clear part's lobe that comes out on the far side.
     pub(super) through: R::Vec3,
-    /// Factor on all of the clear part's lobe.
-    pub(super) given_back: R::Vec3,
     /// Average loss of the clear part, on the near side.
-    pub(super) near: R,
+    pub(super) near: R::Vec3,
     /// The same on the far side.
-    pub(super) far: R,
+    pub(super) far: R::Vec3,
+}
+
+/// [`lookup::compensation`], channel by channel.
+pub(super) fn compensation<R: Real>(loss_o: R::Vec3, loss_i: R::Vec3, average: R::Vec3) -> R::Vec3 {
+    loss_o * loss_i.zip(average, |loss, average| lookup::compensation(R::ONE, loss, average))
 }
 
 /// The index of the inside against the outside.

@@ -131,7 +131,7 @@ pub(super) fn sample_principled<R: Real>(
     let principled = Principled::new(bsdf, geometry, &frame, tables);
     let scattered = principled.scatter(u, counters)?;
     let (Scattered::Mirrored(local, _) | Scattered::Spread(local)) = scattered;
-    let eta_scale = principled.eta_scale(local);
+    let eta_scale = principled.layers.eta_scale(local);
     let wi = frame.to_world(local).normalized();
     // By the direction in the frame: the rounding of the one in world axes could turn it to the other side.
     if (wi.dot(geometry.geometric) > R::ZERO) != (local.z() > R::ZERO) {

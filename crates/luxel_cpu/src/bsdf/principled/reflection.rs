@@ -4,7 +4,7 @@ use luxel_geom::{Real, Vector, microfacet};
 
 use super::super::BsdfValue;
 use super::Principled;
-use super::layers::Albedos;
+use super::layers::{self, Albedos};
 
 impl<R: Real> Principled<'_, R> {
     pub(super) fn reflected(&self, wi: R::Vec3) -> BsdfValue<R> {
@@ -55,7 +55,8 @@ impl<R: Real> Principled<'_, R> {
     fn given_back(&self, there: &Albedos<R>) -> R::Vec3 {
         let returns = &self.returns;
         let metal = lookup::compensation(self.here.loss, there.loss, returns.metal_average);
-        let clear = lookup::compensation(self.here.glass_loss, there.glass_loss, returns.near);
-        returns.metal * metal + returns.given_back * (R::Vec3::splat(R::ONE) - returns.through) * clear
+        let clear = layers::compensation::<R>(self.here.glass_loss, there.glass_loss, returns.near);
+        let stays = (R::Vec3::splat(R::ONE) - returns.through) * self.layers.clear;
+        returns.metal * metal + stays * clear
     }
 }

@@ -2,21 +2,13 @@
 //! its mirrored lobe turned over, as `KHR_materials_transmission` says.
 //!
 //! `f` is that of radiance, smaller by η² than that of power (pbrt-v4 §9.5.2).
-use luxel_geom::albedo::lookup;
 use luxel_geom::{Real, Vector, microfacet, optics};
 
 use super::super::BsdfValue;
+use super::layers::{self, Returns};
 use super::{Principled, Scattered};
 
 impl<R: Real> Principled<'_, R> {
-    /// Square of the relative index if the border of a body was crossed, else 1.
-    pub(super) fn eta_scale(&self, wi: R::Vec3) -> R {
-        if wi.z() >= R::ZERO || self.layers.is_thin {
-            return R::ONE;
-        }
-        self.layers.dielectric.eta * self.layers.dielectric.eta
-    }
-
     /// Lets light pass at a microfacet, with the probability `passing` of what meets it.
     pub(super) fn sample_transmission(&self, h: R::Vec3, passing: R) -> Option<Scattered<R>> {
         let layers = &self.layers;
@@ -34,7 +26,7 @@ impl<R: Real> Principled<'_, R> {
         if !layers.is_smooth {
             return Some(Scattered::Spread(wi));
         }
-        let chance = self.chances.facets * passing * self.eta_scale(wi);
+        let chance = self.chances.facets * passing * self.layers.eta_scale(wi);
         let weight = layers.transmittance(self.wo.z()) * (self.through_coat(wi) / chance);
         Some(Scattered::Mirrored(wi, weight))
     }
@@ -45,10 +37,10 @@ impl<R: Real> Principled<'_, R> {
         }
         let facets = if self.layers.is_thin { self.turned_over(wi) } else { self.refracted(wi) };
         let cos = wi.z().abs();
-        let back = &self.returns;
-        let lobe = lookup::compensation(self.here.glass_loss, self.layers.far_glass_loss(cos), back.far);
-        let spread = back.given_back * back.through * self.layers.bsdf.color * (lobe * cos);
-        let scale = self.through_coat(wi) / self.eta_scale(wi);
+        let Returns { through, far, .. } = self.returns;
+        let lobe = layers::compensation::<R>(self.here.glass_loss, self.layers.far_glass_loss(cos), far);
+        let spread = lobe * through * self.layers.bsdf.color * (self.layers.clear * cos);
+        let scale = self.through_coat(wi) / self.layers.eta_scale(wi);
         BsdfValue {
             f_cos: (facets.f_cos + spread) * scale,
             pdf: facets.pdf + self.chances.through * self.returned_pdf(cos),

@@ -1,12 +1,12 @@
 //! Best settings, with those that cannot be told from them.
 use crate::kit::text::{count, list};
-use crate::kit::verdict::{Case, Noise, Order};
+use crate::kit::verdict::{Case, Noise, Order, pairs};
 
 /// The best settings of a number of spheres.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Best {
     pub(super) spheres: u32,
-    /// Settings that cannot be told from the fastest, rising; at least one.
+    /// Settings than which none is known to be faster, rising; at least the fastest.
     pub(super) settings: Vec<u32>,
     /// The settings that were measured.
     measured: Vec<u32>,
@@ -15,10 +15,13 @@ pub(super) struct Best {
 impl Best {
     /// Of pairs of (setting, speed), which rise in their settings, by the noise between two settings.
     pub(super) fn of(noise: impl Fn(u32, u32) -> Noise, spheres: u32, speeds: &[(u32, f64)]) -> Option<Self> {
-        let (best, fastest) = *speeds.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let is_good = |(at, speed): &&(u32, f64)| noise(best, *at).order(fastest / speed) == Order::Equal;
-        let settings = speeds.iter().filter(is_good).map(|(setting, _)| *setting).collect();
-        Some(Self { spheres, settings, measured: speeds.iter().map(|(setting, _)| *setting).collect() })
+        let is_faster = |(a, fast): &(u32, f64), (b, slow): &(u32, f64)| {
+            noise(*a, *b).order(fast / slow) == Order::Faster
+        };
+        let is_good = |of: &&(u32, f64)| !speeds.iter().any(|other| is_faster(other, of));
+        let settings: Vec<u32> = speeds.iter().filter(is_good).map(|(setting, _)| *setting).collect();
+        let measured = speeds.iter().map(|(setting, _)| *setting).collect();
+        (!settings.is_empty()).then_some(Self { spheres, settings, measured })
     }
 
     /// The smallest of them.
@@ -67,10 +70,11 @@ impl Best {
     }
 }
 
-/// Whether the best setting grows with the spheres: its end is above its start, and it never falls.
+/// Whether the best setting grows with the spheres: its end is above its start, and it never falls, at once or in the long
+/// run.
 pub(super) fn best_grows(best: &[Best]) -> Vec<Case> {
     let [first, .., last] = best else { return Vec::new() };
-    let falls = best.windows(2).any(|pair| pair[0].is_above(&pair[1]) == Case::Yes);
+    let falls = pairs(best).any(|(few, many)| few.is_above(many) == Case::Yes);
     let mut cases = vec![last.is_above(first)];
     cases.extend(falls.then_some(Case::No));
     cases
@@ -105,6 +109,13 @@ mod tests {
     }
 
     #[test]
+    fn what_is_slower_than_some_other_is_not_best_however_noisy_the_fastest_is() {
+        let noise = |a: u32, b: u32| if [a, b].contains(&3) { Noise(3.0) } else { NOISE };
+        let some = Best::of(noise, 10, &[(0, 40.0), (1, 80.0), (2, 78.0), (3, 100.0)]).unwrap();
+        assert_eq!(some.settings, [1, 2, 3]);
+    }
+
+    #[test]
     fn growth_of_the_best_is_told_only_from_what_differs() {
         let at = |setting: u32| best(10, &[(0, 1.0), (setting, 9.0)]);
         let any = best(10, &[(1, 9.0), (2, 9.0), (3, 9.0)]);
@@ -113,6 +124,8 @@ mod tests {
         assert_eq!(best_grows(&[at(3), at(1)]), [Case::No, Case::No]);
         assert_eq!(best_grows(&[at(1), at(4), at(3)]), [Case::Yes, Case::No]);
         assert_eq!(best_grows(&[any.clone(), at(3)]), [Case::Open]);
+        let between = best(10, &[(1, 9.0), (2, 9.0), (4, 9.0)]);
+        assert_eq!(best_grows(&[at(1), at(4), between, at(2)]), [Case::Yes, Case::No]);
         assert!(best_grows(&[any]).is_empty());
     }
 }

@@ -8,7 +8,7 @@ use super::{depth_ink, fps_over_counts, over_counts, series, structure_ink};
 use crate::kit::chart::{Chart, Ink, Kind};
 use crate::kit::figure::{Figure, Part};
 use crate::kit::text::{list, times};
-use crate::kit::verdict::{AtCount, Case, Noise, Verdict, ratios_text};
+use crate::kit::verdict::{AtCount, Case, Noise, Verdict, all_alike, ratios_text};
 
 /// The report's best depths with its limit of frames per second: spheres, depth.
 const REPORTS_BEST: [(u32, u32); 2] = [(500, 1), (1000, 10)];
@@ -102,8 +102,8 @@ fn by_fraction(runs: &Runs<'_>) -> Figure {
         ];
         parts.push(fps_over_counts(format!("{name}; {}", setting(runs.first())), &counts, true, lines));
         let different = |count: &u32| {
-            let (spread, noise) = spread_of_trees(&runs.at(*count))?;
-            Some(((*count, spread), noise.alike(spread)))
+            let (spread, alike) = spread_of_trees(&runs.at(*count))?;
+            Some(((*count, spread), alike))
         };
         let (spreads, alike): (Vec<AtCount>, Vec<Case>) = counts.iter().filter_map(different).unzip();
         cases.extend(alike);
@@ -134,14 +134,19 @@ fn by_fraction(runs: &Runs<'_>) -> Figure {
     }
 }
 
-/// How far the speeds of different trees lie apart, and how far that may be off; `None` if there is but one.
-fn spread_of_trees(runs: &Runs<'_>) -> Option<(f64, Noise)> {
-    let nodes = runs.values(|run| run.nodes);
-    let trees = nodes.iter().map(|nodes| runs.filter(|run| run.nodes == *nodes));
-    let mut trees: Vec<(f64, Runs<'_>)> = trees.filter_map(|tree| Some((tree.fps()?, tree))).collect();
-    trees.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let [slowest, .., fastest] = &trees[..] else { return None };
-    fastest.1.against(&slowest.1)
+/// How far the speeds of different trees lie apart, and whether all are alike; `None` if there is but one.
+fn spread_of_trees(runs: &Runs<'_>) -> Option<(f64, Case)> {
+    let of = |nodes: u32| runs.filter(|run| run.nodes == nodes);
+    let trees = runs.values(|run| run.nodes).into_iter();
+    let speeds: Vec<(u32, f64)> = trees.filter_map(|nodes| Some((nodes, of(nodes).fps()?))).collect();
+    let alike = all_alike(|a, b| runs.noise_of(&[of(a), of(b)]), &speeds)?;
+    Some((spread(&speeds)?, alike))
+}
+
+/// How many times faster the fastest of some settings is than the slowest.
+pub(super) fn spread(speeds: &[(u32, f64)]) -> Option<f64> {
+    let values = || speeds.iter().map(|(_, speed)| *speed);
+    Some(values().reduce(f64::max)? / values().reduce(f64::min)?)
 }
 
 fn by_quality(runs: &Runs<'_>) -> Figure {
@@ -171,10 +176,9 @@ fn by_quality(runs: &Runs<'_>) -> Figure {
             reasons += &format!("{name}, {quality}: {said}. ");
         }
         let Some(low) = curves.first() else { continue };
-        let unlike: Vec<(f64, Noise)> =
-            curves[1..].iter().filter_map(|curve| curve.unlikeness(low)).collect();
-        cases.extend(unlike.iter().map(|(ratio, noise)| noise.alike(*ratio)));
-        if let Some(most) = unlike.into_iter().map(|(ratio, _)| ratio).reduce(f64::max) {
+        let compared: Vec<Vec<(f64, Case)>> = curves[1..].iter().map(|curve| curve.against(low)).collect();
+        cases.extend(compared.iter().filter_map(|at| Case::all(at.iter().map(|(_, alike)| *alike))));
+        if let Some(most) = compared.into_iter().flatten().map(|(ratio, _)| ratio).reduce(f64::max) {
             reasons += &format!("Set to 1 at depth 1, its qualities differ by {} at most. ", times(most));
         }
     }
@@ -229,17 +233,15 @@ impl<'a> Curve<'a> {
         (cases, said.join(", "))
     }
 
-    /// The largest ratio between two curves that are both set to 1 at depth 1, and how far it may be off.
-    fn unlikeness(&self, other: &Self) -> Option<(f64, Noise)> {
-        let (mine, its) = (self.at(1)?, other.at(1)?);
-        let ratio = |(depth, fps): &(u32, f64)| {
-            let ratio = (fps / mine) / (other.at(*depth)? / its);
-            Some((ratio.max(1.0 / ratio), *depth))
+    /// The ratio between two curves that are both set to 1 at depth 1, and whether they are alike, at each further depth.
+    fn against(&self, other: &Self) -> Vec<(f64, Case)> {
+        let at = |depth: u32| {
+            let ratio = (self.at(depth)? / self.at(1)?) / (other.at(depth)? / other.at(1)?);
+            let compared = [self, other].map(|curve| [1, depth].map(|at| of_depth(&curve.runs, at)));
+            let alike = self.runs.noise_of(compared.as_flattened()).alike(ratio);
+            Some((ratio.max(1.0 / ratio), alike))
         };
-        let ratios = self.speeds.iter().filter(|(depth, _)| *depth > 1).filter_map(ratio);
-        let (most, depth) = ratios.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let compared = [self, other].map(|curve| [1, depth].map(|at| of_depth(&curve.runs, at)));
-        Some((most, self.runs.noise_of(compared.as_flattened())))
+        self.speeds.iter().filter(|(depth, _)| *depth > 1).filter_map(|(depth, _)| at(*depth)).collect()
     }
 }
 
@@ -259,7 +261,7 @@ fn best_depths(ones: &Runs<'_>) -> Figure {
     Figure {
         number: 27,
         title: "Best depth per number of spheres".to_owned(),
-        shows: "The smallest depth that cannot be told from the fastest, without a limit of frames per second, smallest \
+        shows: "The smallest depth than which no other is known to be faster, without a limit of frames per second, smallest \
                 node 1."
             .to_owned(),
         claim: Some(

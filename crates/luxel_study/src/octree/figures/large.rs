@@ -31,15 +31,15 @@ fn large_scenes(runs: &Runs<'_>) -> Figure {
             let runs = on.with(structure);
             let ends = runs.counts();
             let (Some(&few), Some(&many)) = (ends.first(), ends.last()) else { continue };
-            let (Some(a), Some(b)) = (runs.at(few).fps(), runs.at(many).fps()) else { continue };
+            let Some((longer, noise)) = runs.at(few).against(&runs.at(many)) else { continue };
             if few < many {
-                cases.push(Case::from(a / b < PROPORTION * f64::from(many) / f64::from(few)));
+                cases.push(noise.faster(PROPORTION * f64::from(many) / f64::from(few) / longer));
                 reasons += &format!(
                     "{structure} on the {}: {} as many spheres ({} instead of {few}) take {} as long. ",
                     backend_name(backend),
                     times(f64::from(many) / f64::from(few)),
                     count(u64::from(many)),
-                    times(a / b)
+                    times(longer)
                 );
             }
         }

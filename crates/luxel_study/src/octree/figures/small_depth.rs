@@ -2,12 +2,12 @@
 use super::super::record::{Run, Sweep};
 use super::super::select::{FPS_LIMIT, Limit, Runs, Subject};
 use super::best::{Best, best_grows, best_text};
-use super::depth::{as_reported, noise_of_depths, of_depth, speeds};
+use super::depth::{as_reported, noise_of_depths, of_depth, speeds, spread};
 use super::{depth_ink, over_counts, series};
 use crate::kit::chart::Kind;
 use crate::kit::figure::{Figure, Part};
 use crate::kit::text::{count, times};
-use crate::kit::verdict::{AtCount, Case, Noise, Verdict, growth, ratios_text};
+use crate::kit::verdict::{AtCount, Case, Noise, Verdict, all_alike, growth, ratios_text};
 
 /// Depths up to this.
 const SMALL_DEPTH: u32 = 5;
@@ -80,15 +80,15 @@ fn with_limit(small: &Runs<'_>) -> Figure {
         parts.push(depth_bars(&runs, caption, Limit::On).with_level(FPS_LIMIT));
         let counts = runs.counts();
         let [fewest, .., most] = counts[..] else { continue };
-        let Some((few, noise)) = spread_of_depths(&runs.at(fewest)) else { continue };
-        cases.push(noise.alike(few));
+        let Some((few, alike)) = spread_of_depths(&runs.at(fewest)) else { continue };
+        cases.push(alike);
         let fewest = count(u64::from(fewest));
         reasons += &match times(few) {
             same if same == "1×" => format!("{name}: all depths are equally fast at {fewest} spheres"),
             apart => format!("{name}: the fastest depth is {apart} the slowest at {fewest} spheres"),
         };
-        if let Some((gain, depth)) = gain_of_depth(&runs.at(most)) {
-            cases.push(noise_of_depths(&runs.at(most), [depth, 0]).much_faster(gain));
+        if let Some((gain, _)) = gain_of_depth(&runs.at(most)) {
+            cases.extend(falls_off(&runs.at(most)));
             reasons += &format!(", the best is {} depth 0 at {}", times(gain), count(u64::from(most)));
         }
         reasons += ". ";
@@ -107,20 +107,31 @@ fn with_limit(small: &Runs<'_>) -> Figure {
     }
 }
 
-/// How far the speeds of all depths lie apart, and how far that may be off.
-fn spread_of_depths(runs: &Runs<'_>) -> Option<(f64, Noise)> {
-    let mut speeds = speeds(runs, Limit::On);
-    speeds.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let ((slow, least), (fast, most)) = (speeds.first()?, speeds.last()?);
-    Some((most / least, noise_of_depths(runs, [*fast, *slow])))
+/// How far the speeds of all depths lie apart, and whether all are alike.
+fn spread_of_depths(runs: &Runs<'_>) -> Option<(f64, Case)> {
+    let speeds = speeds(runs, Limit::On);
+    let alike = all_alike(|a, b| noise_of_depths(runs, [a, b]), &speeds)?;
+    Some((spread(&speeds)?, alike))
+}
+
+/// How many times faster each depth is than depth 0.
+fn gains_of_depths(runs: &Runs<'_>) -> Vec<(u32, f64)> {
+    let speeds = speeds(runs, Limit::On);
+    let flat = speeds.iter().find(|(depth, _)| *depth == 0).map(|(_, speed)| *speed);
+    let divided = speeds.iter().filter(|(depth, _)| *depth > 0);
+    divided.filter_map(|(depth, speed)| Some((*depth, speed / flat?))).collect()
+}
+
+/// Whether some depth is much faster than depth 0: the fastest alone may be noisy where others are not.
+fn falls_off(runs: &Runs<'_>) -> Option<Case> {
+    let gains = gains_of_depths(runs);
+    Case::any(gains.iter().map(|(depth, gain)| noise_of_depths(runs, [*depth, 0]).much_faster(*gain)))
 }
 
 /// How many times faster the best depth is than depth 0, and that depth.
 fn gain_of_depth(runs: &Runs<'_>) -> Option<(f64, u32)> {
-    let speeds = speeds(runs, Limit::On);
-    let flat = speeds.iter().find(|(depth, _)| *depth == 0)?.1;
-    let divided = speeds.iter().filter(|(depth, _)| *depth > 0).map(|(depth, speed)| (speed / flat, *depth));
-    divided.max_by(|a, b| a.0.total_cmp(&b.0))
+    let gains = gains_of_depths(runs).into_iter().map(|(depth, gain)| (gain, depth));
+    gains.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// How far the growth of the best gain between two numbers of spheres may be off.

@@ -263,15 +263,36 @@ fn large_scenes_must_not_take_time_in_proportion() {
     assert_eq!(answer(&runs(0.1).collect::<Vec<_>>(), 26), Answer::Fails);
 }
 
+/// A run whose frames scatter by a factor.
+fn scattered(run: Run, scatter: f64) -> Run {
+    let ms = run.frame_ms;
+    run.with_frames([ms / scatter, ms, ms * scatter])
+}
+
+/// The fastest or slowest of all is so noisy that it tells nothing, but others differ as well.
+#[test]
+fn a_noisy_extreme_does_not_hide_what_the_others_tell() {
+    let trees = OCTREES.into_iter().flat_map(|structure| {
+        [(5, 100.0, 1.0), (10, 60.0, 1.0), (20, 50.0, 3.0)].map(|(depth, fps, scatter)| {
+            scattered(run(Sweep::Fraction, structure, 10, depth, 1, fps), scatter)
+        })
+    });
+    assert_eq!(answer(&trees.collect::<Vec<_>>(), 16), Answer::Fails);
+    // Depths of few spheres are not alike, but depth 0 falls off with many.
+    let few = depths(10, |depth| if depth == 0 { 10.0 } else { 100.0 });
+    let many = depths(2000, |depth| [10.0, 100.0, 110.0][depth.min(2) as usize]);
+    let many = many.into_iter().map(|run| match run.max_depth {
+        2.. => scattered(run, 20.0),
+        _ => run,
+    });
+    assert_eq!(answer(&few.into_iter().chain(many).collect::<Vec<_>>(), 18), Answer::Partly);
+}
+
 /// The medians are those of claims that hold, but the frames scatter more than they differ.
 #[test]
 fn frames_that_overlap_tell_nothing_however_far_apart_their_medians_are() {
     let scattered = |runs: Vec<Run>, scatter: f64| -> Vec<Run> {
-        let of = |run: Run| {
-            let ms = run.frame_ms;
-            run.with_frames([ms / scatter, ms, ms * scatter])
-        };
-        runs.into_iter().map(of).collect()
+        runs.into_iter().map(|run| scattered(run, scatter)).collect()
     };
     let counts = || {
         let mut runs = Vec::new();
