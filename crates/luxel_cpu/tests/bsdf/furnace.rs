@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use luxel_flat::{MATERIAL_THIN, MaterialRecord};
 use luxel_geom::optics;
+use rayon::prelude::*;
 
 use crate::closures::{Numbers, evaluate, geometry, layered, lossless, sample};
 
@@ -240,21 +241,24 @@ fn failures(
     closures: impl Fn(f32) -> Vec<(&'static str, MaterialRecord)>,
     roughnesses: &[f32],
     cosines: &[f64],
-    holds: impl Fn(&MaterialRecord, Place) -> Result<(), String>,
-) -> u32 {
-    let mut failed = 0;
-    for roughness in roughnesses {
-        for (name, record) in closures(*roughness) {
-            let fronts: &[bool] = if can_pass(&record) { &[true, false] } else { &[true] };
-            for place in cosines.iter().flat_map(|cos| fronts.iter().map(|front| (*cos, *front))) {
-                if let Err(what) = holds(&record, place) {
-                    println!("{name}, roughness {roughness}, cos {}, front {}: {what}", place.0, place.1);
-                    failed += 1;
-                }
+    holds: impl Fn(&MaterialRecord, Place) -> Result<(), String> + Sync,
+) -> usize {
+    let of =
+        |roughness: f32| closures(roughness).into_iter().map(move |(name, record)| (roughness, name, record));
+    let all: Vec<_> = roughnesses.iter().copied().flat_map(of).collect();
+    let failed = all.into_par_iter().map(|(roughness, name, record)| {
+        let fronts: &[bool] = if can_pass(&record) { &[true, false] } else { &[true] };
+        let places = cosines.iter().flat_map(|cos| fronts.iter().map(|front| (*cos, *front)));
+        let fails = |place: &Place| {
+            let what = holds(&record, *place).err();
+            if let Some(what) = &what {
+                println!("{name}, roughness {roughness}, cos {}, front {}: {what}", place.0, place.1);
             }
-        }
-    }
-    failed
+            what.is_some()
+        };
+        places.filter(fails).count()
+    });
+    failed.sum()
 }
 
 fn at_most(what: &str, off: f64, limit: f64) -> Result<(), String> {
