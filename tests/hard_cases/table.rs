@@ -105,7 +105,7 @@ pub(crate) const ROWS: [Row; 77] = [
     row("L08", 30, 30, "views of every closure, at 250 triples of numbers, in the soak run as well; weights within a bound that follows from how lobes are chosen", &["crates/luxel_cpu/tests/bsdf/extremes.rs", "crates/luxel_cpu/tests/bsdf/bounds.rs", "crates/luxel_geom/tests/microfacet.rs", "crates/luxel_geom/tests/normal_guard.rs"]),
     row("L09", 125, 125, "corners of the unit cube for every sampler", &["crates/luxel_cpu/tests/bsdf/extremes.rs", "crates/luxel_geom/tests/sampling.rs", "crates/luxel_geom/tests/emitter.rs", "crates/luxel_geom/tests/microfacet.rs"]),
     row("L10", 10_000_000, 100_000_000, "normals", &["crates/luxel_geom/tests/sampling.rs"]),
-    row("L11", 7, 7, "scenes, 32 batches by each of three estimators", &["tests/lights/estimators.rs"]),
+    row("L11", 7, 7, "scenes, 32 batches by each of three estimators, of 16 times the samples in the soak run", &["tests/lights/estimators.rs"]),
     row("L12", 1, 16, "times the samples, for each of eight spheres and their neighbours", &["tests/lights/closed_forms.rs", "crates/luxel_geom/tests/emitter.rs"]),
     row("L13", 7, 7, "scenes", &["tests/furnace/walls.rs", "tests/lights/estimators.rs"]),
     row("L14", 2_048, 65_536, "samples per pixel at most, from 64; 32 pictures of five scenes", &["tests/samples/slope.rs"]),

@@ -22,7 +22,8 @@ fn point_of_floor(eye: DVec3, size: f64) -> luxel_engine::Engine {
     engine(world)
 }
 
-fn is_soak() -> bool {
+/// True in the soak run (`cargo xtask soak`).
+pub(crate) fn is_soak() -> bool {
     std::env::var("LUXEL_SOAK").is_ok_and(|soak| soak == "1")
 }
 

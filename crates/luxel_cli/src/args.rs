@@ -183,7 +183,7 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) scene: Option<String>,
 
-    /// Picture around the scene (.hdr, .exr) in place of its sky; a model then gets no lamp
+    /// Picture around the scene (.hdr, .exr; a .png or .jpg ends at white) in place of its sky; a model then gets no lamp
     #[arg(long, value_name = "FILE")]
     pub(crate) environment: Option<PathBuf>,
 
