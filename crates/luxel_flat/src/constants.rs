@@ -6,11 +6,17 @@ macro_rules! shared_const {
         $($(#[$meta])* pub const $name: $ty = $value;)*
         /// Every shared constant as (name, WGSL type, WGSL value).
         pub(crate) fn table() -> Vec<(&'static str, &'static str, String)> {
-            vec![$((stringify!($name), stringify!($ty), shared_const!(@text $ty, $name)),)*]
+            vec![$((stringify!($name), shared_const!(@type $ty), shared_const!(@text $ty, $name)),)*]
         }
     };
+    (@type [f32; 4]) => { "vec4f" };
+    (@type $ty:tt) => { stringify!($ty) };
     (@text u32, $name:ident) => { format!("{}u", $name) };
     (@text f32, $name:ident) => { format!("{:?}f", $name) };
+    (@text [f32; 4], $name:ident) => {{
+        let [x, y, z, w] = $name;
+        format!("vec4f({x:?}f, {y:?}f, {z:?}f, {w:?}f)")
+    }};
 }
 
 shared_const! {
@@ -56,6 +62,23 @@ shared_const! {
     pub const ALBEDO_GLASS: u32 = luxel_geom::albedo::GLASS;
     /// Where the averages of the albedo tables of glass start.
     pub const ALBEDO_GLASS_AVERAGES: u32 = luxel_geom::albedo::GLASS_AVERAGES;
+    /// Place of the index 1 on the axis of those of glass.
+    pub const GLASS_MIDDLE: f32 = luxel_geom::albedo::axes::GLASS_MIDDLE as f32;
+    /// Share of the cosines' axis that lies about the critical angle.
+    pub const CRITICAL_SHARE: f32 = luxel_geom::albedo::axes::CRITICAL_SHARE as f32;
+    /// Critical cosine at which it has about half of that share.
+    pub const CRITICAL_ONSET: f32 = luxel_geom::albedo::axes::CRITICAL_ONSET as f32;
+    /// Half width of that part of the axis, in widths of the lobe.
+    pub const CRITICAL_WIDTH: f32 = luxel_geom::albedo::axes::CRITICAL_WIDTH as f32;
+    /// Index of the clear coat (`KHR_materials_clearcoat`).
+    pub const COAT_INDEX: f32 = 1.5;
+    /// Least relative index of a rough body, or its greatest inverse: nearer to 1 a refracted direction does not tell
+    /// the microfacet.
+    pub const LEAST_ROUGH_INDEX: f32 = 1.001;
+    /// Gauss and Legendre's points on [0, 1].
+    pub const GAUSS_POINTS: [f32; 4] = [0.069_431_84, 0.330_009_48, 0.669_990_5, 0.930_568_2];
+    /// Their weights.
+    pub const GAUSS_WEIGHTS: [f32; 4] = [0.173_927_42, 0.326_072_58, 0.326_072_58, 0.173_927_42];
     /// Random-number blocks of the camera.
     pub const CAMERA_BLOCKS: u32 = luxel_geom::rng::CAMERA_BLOCKS;
     /// Random-number blocks of a bounce.

@@ -3,12 +3,10 @@
 //! A weight is the sum of the lobes' values over the sum of their densities, so at most the largest quotient of one lobe;
 //! and a lobe is chosen by the share of the light that it is thought to carry, over what all lobes are. What follows are
 //! these quotients, from the albedo tables.
-use luxel_flat::{MATERIAL_PRINCIPLED, MATERIAL_THIN, MaterialRecord};
+use luxel_flat::{COAT_INDEX, MATERIAL_PRINCIPLED, MATERIAL_THIN, MaterialRecord};
 use luxel_geom::albedo::{Facets, TABLES, lookup};
 use luxel_geom::{microfacet, optics, schlick, warp};
 
-/// Index of the clear coat.
-const COAT_INDEX: f64 = 1.5;
 /// How far tables, and sums over few points, may be off.
 const SLACK: f64 = 1.01;
 /// Cosines to look for the largest quotient of returned light at.
@@ -24,7 +22,9 @@ struct Seen<'a> {
     /// Index on the far side over that on the near side.
     eta: f64,
     metal: f64,
-    dielectric: f64,
+    /// Share that dielectric microfacets cover: paint lies bare to the denser side.
+    covered: f64,
+    diffuse: f64,
     clear: f64,
     /// The largest share of one channel in the mean of three.
     tint: f64,
@@ -47,6 +47,8 @@ impl<'a> Seen<'a> {
         let (index, roughness) = (f64::from(record.ior), f64::from(record.roughness));
         let alpha = microfacet::alpha_of_roughness(roughness);
         let metal = f64::from(record.metallic);
+        let eta = if is_inside { 1.0 / index } else { index };
+        let clear = (1.0 - metal) * f64::from(record.transmission);
         let is_grey = [record.color, record.specular_color].iter().all(|c| c[0] == c[1] && c[1] == c[2]);
         Self {
             record,
@@ -54,10 +56,11 @@ impl<'a> Seen<'a> {
             roughness,
             alpha,
             is_smooth: microfacet::is_effectively_smooth(alpha),
-            eta: if is_inside { 1.0 / index } else { index },
+            eta,
             metal,
-            dielectric: 1.0 - metal,
-            clear: (1.0 - metal) * f64::from(record.transmission),
+            covered: if eta < 1.0 { clear } else { 1.0 - metal },
+            diffuse: 1.0 - metal - clear,
+            clear,
             tint: if is_grey { 1.0 } else { 3.0 },
         }
     }
@@ -123,14 +126,14 @@ impl<'a> Seen<'a> {
         let color = self.record.color.into_iter().map(f64::from);
         let passing = color.clone().sum::<f64>() / 3.0 * (self.glass_kept() - most_mirrored).max(0.0);
         let metal = color.sum::<f64>() / 3.0 * kept;
-        let carried = mirrored * self.dielectric + passing * self.clear + metal * self.metal;
-        let largest = if self.clear > 0.0 { 1.0 } else { self.strength() * self.dielectric + self.metal };
+        let carried = mirrored * self.covered + passing * self.clear + metal * self.metal;
+        let largest = if self.clear > 0.0 { 1.0 } else { self.strength() * self.covered + self.metal };
         if carried > 0.0 { self.tint * largest / carried } else { 0.0 }
     }
 
     /// The diffuse base gets what passes on the way in; on the way out it is divided by the mean of that.
     fn diffuse(&self) -> f64 {
-        if self.clear == self.dielectric {
+        if self.diffuse == 0.0 {
             return 0.0;
         }
         let quotient = |channel| match self.mean_let_through(channel) {
@@ -141,8 +144,11 @@ impl<'a> Seen<'a> {
     }
 
     fn mean_let_through(&self, channel: usize) -> f64 {
+        if self.eta < 1.0 {
+            return 1.0;
+        }
         let r = self.roughness;
-        if self.record.clearcoat == 0.0 && self.eta >= 1.0 {
+        if self.record.clearcoat == 0.0 {
             let loss = lookup::conductor_loss_average::<f64>(&TABLES, r);
             let kept = if self.is_smooth { 1.0 } else { 1.0 - loss };
             let passing = lookup::coat_passing_average(&TABLES, r, self.eta);
@@ -150,10 +156,8 @@ impl<'a> Seen<'a> {
         }
         let under = |cos: f64| {
             let kept = self.kept(cos);
-            let outer = if self.eta < 1.0 { optics::fresnel_dielectric(cos, self.eta).cos_t } else { cos };
-            let is_level = self.is_smooth || self.eta < 1.0;
-            let rim = if is_level {
-                kept * schlick::schlick_weight(outer)
+            let rim = if self.is_smooth {
+                schlick::schlick_weight(cos)
             } else {
                 lookup::rim_albedo(&TABLES, cos, r)
             };
@@ -197,10 +201,10 @@ impl<'a> Seen<'a> {
     fn coat_albedo(&self, cos: f64) -> f64 {
         let roughness = f64::from(self.record.clearcoat_roughness);
         if microfacet::is_effectively_smooth(microfacet::alpha_of_roughness(roughness)) {
-            return optics::fresnel_dielectric(cos, COAT_INDEX).reflectance;
+            return optics::fresnel_dielectric(cos, COAT_INDEX.into()).reflectance;
         }
         let kept = 1.0 - lookup::conductor_loss(&TABLES, cos, roughness);
-        kept * lookup::mean_reflectance(&TABLES, cos, roughness, COAT_INDEX)
+        kept * lookup::mean_reflectance(&TABLES, cos, roughness, COAT_INDEX.into())
     }
 
     /// The coat's microfacets reflect all at most; they are chosen by their albedo.

@@ -34,6 +34,11 @@ pub(crate) fn glass(roughness: f32, ior: f32) -> MaterialRecord {
     MaterialRecord { transmission: 1.0, ior, ..principled(roughness) }
 }
 
+/// Paint on half of a clear body.
+fn half_clear(roughness: f32, ior: f32) -> MaterialRecord {
+    MaterialRecord { transmission: 0.5, ..glass(roughness, ior) }
+}
+
 fn opaque(roughness: f32, ior: f32) -> MaterialRecord {
     MaterialRecord { ior, ..principled(roughness) }
 }
@@ -92,6 +97,9 @@ pub(crate) fn lossless(roughness: f32) -> Vec<(&'static str, MaterialRecord)> {
         ("weak glass", tinted([1.0, 0.5, 0.0], MaterialRecord { specular: 0.5, ..glass(roughness, 1.5) })),
         ("tinted glass of index 10", tinted([1.0, 0.5, 0.0], glass(roughness, 10.0))),
         ("glass of stronger reflection", tinted([2.0, 5.0, 30.0], glass(roughness, 1.33))),
+        ("half clear", half_clear(roughness, 1.5)),
+        ("half clear of index 1.05", half_clear(roughness, 1.05)),
+        ("half clear in what is denser", half_clear(roughness, 0.8)),
         ("weak thin glass", tinted([1.0, 0.5, 0.0], MaterialRecord { specular: 0.5, ..thin(roughness) })),
     ]
 }
@@ -105,7 +113,6 @@ pub(crate) fn layered(roughness: f32) -> Vec<(&'static str, MaterialRecord)> {
         ("coated metal", coated(metal(roughness), 1.0, 0.2)),
         ("coated glass", coated(glass(roughness, 1.5), 1.0, 0.3)),
         ("coated thin", coated(thin(roughness), 1.0, 0.3)),
-        ("half clear", MaterialRecord { transmission: 0.5, ..principled(roughness) }),
         ("mixed", mixed(roughness)),
         ("white mixed", MaterialRecord { color: [1.0; 3], ..mixed(roughness) }),
     ]

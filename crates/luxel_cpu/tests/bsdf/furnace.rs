@@ -20,16 +20,15 @@ const TOLERANCE: f64 = 3e-3;
 /// No layered closure may exceed one by more.
 const MOST: f64 = 1e-3;
 /// The least that white layered closures keep, from the front and from the inside. A coat keeps some of what it holds back
-/// twice, and paint that a body is half covered with absorbs what comes to it from inside.
-const KEPT: [(&str, [f64; 2]); 8] = [
+/// twice.
+const KEPT: [(&str, [f64; 2]); 7] = [
     ("coated", [0.987, 1.0]),
     ("rough coat", [0.986, 1.0]),
     ("half a coat", [0.997, 1.0]),
     ("coated metal", [0.957, 1.0]),
     ("coated glass", [0.993, 0.949]),
     ("coated thin", [0.964, 0.964]),
-    ("half clear", [0.997, 0.52]),
-    ("white mixed", [0.989, 0.578]),
+    ("white mixed", [0.989, 0.991]),
 ];
 /// Standard error of a sampler's mean that is asked for, and the fewest and the most samples in each shift of its points.
 const SAMPLED_ERROR: f64 = 5e-4;

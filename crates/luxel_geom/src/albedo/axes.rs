@@ -10,11 +10,11 @@ use crate::{Real, microfacet};
 /// Place of the index 1 among those of glass: denser sides lie below, so many of the intervals are theirs.
 pub const GLASS_MIDDLE: f64 = 44.0 / 64.0;
 /// Share of the cosines' axis that lies about the critical angle.
-const CRITICAL_SHARE: f64 = 0.5;
+pub const CRITICAL_SHARE: f64 = 0.5;
 /// Critical cosine at which it has half of that share, but for a tenth: there is no such angle at an index of 1.
-const CRITICAL_ONSET: f64 = 0.1;
+pub const CRITICAL_ONSET: f64 = 0.1;
 /// Half width of that part of the axis, in widths of the lobe.
-const CRITICAL_WIDTH: f64 = 3.0;
+pub const CRITICAL_WIDTH: f64 = 3.0;
 /// Least 1 − s² that a place stands for: in the tables an infinite index is finite.
 const LEAST_GAP: f64 = 1e-18;
 

@@ -28,13 +28,13 @@ impl<R: Real> Chances<R> {
         // Of what clear microfacets keep, all that is not mirrored passes.
         let passing = (one - here.glass_loss - here.mirrored).max(R::Vec3::splat(R::ZERO));
         let metal = fresnel::metal(layers.bsdf, here.cos) * (kept * layers.metal);
-        let facets = here.mirrored * layers.dielectric_share + color * passing * layers.clear + metal;
+        let facets = here.mirrored * layers.covered + color * passing * layers.clear + metal;
         let lost = here.glass_loss * layers.clear;
-        let diffuse = color * (one - here.mirrored) * layers.diffuse;
         let returned = returns.metal * here.loss + lost * (one - returns.through);
         let through = lost * returns.through * color;
-        let [facets, diffuse, returned, through] =
-            [facets, diffuse, returned, through].map(|share| mean::<R>(share) * under_coat);
+        let diffuse = mean::<R>(color * layers.passing(here) * layers.diffuse);
+        let [facets, returned, through] =
+            [facets, returned, through].map(|share| mean::<R>(share) * under_coat);
         let sum = here.coat + facets + diffuse + returned + through;
         let scale = if sum > R::ZERO { R::ONE / sum } else { R::ZERO };
         Self {

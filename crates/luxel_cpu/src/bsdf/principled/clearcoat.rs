@@ -1,8 +1,8 @@
 //! The clear coat: a dielectric's reflection over everything else (`KHR_materials_clearcoat`).
+use luxel_flat::COAT_INDEX;
 use luxel_geom::{Real, Vector, microfacet, optics};
 
 use super::super::BsdfValue;
-use super::layers::COAT_INDEX;
 use super::{Principled, Scattered};
 
 impl<R: Real> Principled<'_, R> {
@@ -25,7 +25,7 @@ impl<R: Real> Principled<'_, R> {
             return BsdfValue::black();
         }
         let alpha = layers.coat_alpha;
-        let fresnel = optics::fresnel_dielectric(self.wo.dot(h), R::from_f64(COAT_INDEX)).reflectance;
+        let fresnel = optics::fresnel_dielectric(self.wo.dot(h), R::from_f32(COAT_INDEX)).reflectance;
         let lobe = microfacet::distribution::<R>(h, alpha) * microfacet::visibility::<R>(self.wo, wi, alpha);
         BsdfValue {
             f_cos: R::Vec3::splat(layers.coat * fresnel * lobe * wi.z()),

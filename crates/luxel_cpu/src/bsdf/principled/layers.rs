@@ -4,28 +4,16 @@
 //! part of the dielectric); under them the diffuse base. What one layer lets through is coupled to the next by directional
 //! albedos from `luxel_geom::albedo`, so that reciprocity holds and no light is made:
 //!
-//! - the diffuse base by (1 − E(o)) (1 − E(i)) / mean of (1 − E), E being the albedo of all above it;
+//! - the diffuse base by (1 − E(o)) (1 − E(i)) / mean of (1 − E), E being the albedo of all above it. Paint on a clear
+//!   body holds to the denser side: seen from there it lies bare, and microfacets cover the clear share alone;
 //! - the microfacets under a coat of albedo C by 1 − max(C(o), C(i)): exact for a mirror, and never too much;
 //! - light that single scattering between microfacets loses comes back by Kulla and Conty's lobe (2017).
-use luxel_flat::MATERIAL_THIN;
+use luxel_flat::{COAT_INDEX, GAUSS_POINTS, GAUSS_WEIGHTS, LEAST_ROUGH_INDEX, MATERIAL_THIN};
 use luxel_geom::albedo::{Facets, lookup};
 use luxel_geom::{Real, Vector, microfacet, optics, schlick};
 
 use super::super::Bsdf;
 use super::fresnel::{self, Dielectric, Means};
-
-/// Index of the clear coat (`KHR_materials_clearcoat`).
-pub(super) const COAT_INDEX: f64 = 1.5;
-/// Least relative index of a rough body, or its greatest inverse: nearer to 1 a refracted direction does not tell the
-/// microfacet.
-const LEAST_INDEX: f64 = 1.001;
-/// Gauss and Legendre's points and weights on [0, 1].
-const GAUSS: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
 
 /// The material at a point, seen from one side.
 #[derive(Clone, Copy, Debug)]
@@ -36,8 +24,10 @@ pub(super) struct Layers<'a, R: Real> {
     pub(super) metal: R,
     pub(super) diffuse: R,
     pub(super) clear: R,
-    /// Share of the base that is dielectric.
-    pub(super) dielectric_share: R,
+    /// Share of the base that dielectric microfacets cover.
+    pub(super) covered: R,
+    /// No microfacets cover the diffuse base.
+    is_paint_bare: bool,
     /// Width of the microfacets' lobe.
     pub(super) alpha: R,
     /// The microfacets lie level: a mirror.
@@ -76,20 +66,23 @@ impl<'a, R: Real> Layers<'a, R> {
         let is_smooth = microfacet::is_effectively_smooth(alpha);
         let index = index(bsdf, is_smooth || is_thin);
         let coat_alpha = microfacet::alpha_of_roughness(bsdf.clearcoat_roughness);
-        let dielectric = R::ONE - bsdf.metallic;
+        let eta = if is_inside { R::ONE / index } else { index };
+        let is_paint_bare = eta < R::ONE;
+        let not_metal = R::ONE - bsdf.metallic;
+        let clear = not_metal * bsdf.transmission;
         Self {
             bsdf,
             tables,
             metal: bsdf.metallic,
-            // Paint hides the inside of a body: what comes from there is let out or absorbed.
-            dielectric_share: dielectric,
-            diffuse: if is_inside { R::ZERO } else { dielectric * (R::ONE - bsdf.transmission) },
-            clear: dielectric * bsdf.transmission,
+            diffuse: not_metal * (R::ONE - bsdf.transmission),
+            clear,
+            covered: if is_paint_bare { clear } else { not_metal },
+            is_paint_bare,
             alpha,
             is_smooth,
             is_thin,
             is_inside,
-            dielectric: Dielectric::new(bsdf, if is_inside { R::ONE / index } else { index }),
+            dielectric: Dielectric::new(bsdf, eta),
             coat: if is_inside { R::ZERO } else { bsdf.clearcoat },
             coat_alpha,
             is_coat_smooth: microfacet::is_effectively_smooth(coat_alpha),
@@ -106,7 +99,7 @@ impl<'a, R: Real> Layers<'a, R> {
 
     /// Reflectance of a microfacet, metal and dielectric together.
     pub(super) fn reflectance(&self, cos: R) -> R::Vec3 {
-        let dielectric = self.dielectric.reflectance(cos) * (R::ONE - self.metal);
+        let dielectric = self.dielectric.reflectance(cos) * self.covered;
         if self.metal == R::ZERO {
             return dielectric;
         }
@@ -182,7 +175,7 @@ impl<'a, R: Real> Layers<'a, R> {
 
     /// Albedo of the coat itself, its strength left out.
     pub(super) fn coat_albedo(&self, cos: R) -> R {
-        let index = R::from_f64(COAT_INDEX);
+        let index = R::from_f32(COAT_INDEX);
         if self.is_coat_smooth {
             return optics::fresnel_dielectric(cos, index).reflectance;
         }
@@ -193,17 +186,17 @@ impl<'a, R: Real> Layers<'a, R> {
 
     /// What the layers above the diffuse base let through under a cosine.
     pub(super) fn passing(&self, at: &Albedos<R>) -> R::Vec3 {
-        (R::Vec3::splat(R::ONE) - at.mirrored) * (R::ONE - at.coat)
+        let mirrored = if self.is_paint_bare { R::Vec3::splat(R::ZERO) } else { at.mirrored };
+        (R::Vec3::splat(R::ONE) - mirrored) * (R::ONE - at.coat)
     }
 
     /// The cosine-weighted mean of [`Self::passing`].
     pub(super) fn passing_average(&self) -> R::Vec3 {
-        // The table of averages is for rays that come from the thinner side.
-        if self.coat > R::ZERO || self.dielectric.eta < R::ONE {
-            return GAUSS.iter().fold(R::Vec3::splat(R::ZERO), |sum, (cos, weight)| {
-                let passing = self.passing(&self.albedos(R::from_f64(*cos)));
-                sum + passing * R::from_f64(2.0 * cos * weight)
-            });
+        if self.coat > R::ZERO {
+            return self.passing_by_points();
+        }
+        if self.is_paint_bare {
+            return R::Vec3::splat(R::ONE);
         }
         let roughness = if self.is_smooth { R::ZERO } else { self.bsdf.roughness };
         let loss =
@@ -213,6 +206,14 @@ impl<'a, R: Real> Layers<'a, R> {
         let rim = lookup::rim_albedo_average(self.tables, roughness);
         let means = Means { one, exact, rim, zero: R::ZERO };
         R::Vec3::splat(R::ONE) - self.dielectric.mean(means)
+    }
+
+    /// [`Self::passing_average`] by Gauss and Legendre's four points.
+    fn passing_by_points(&self) -> R::Vec3 {
+        GAUSS_POINTS.into_iter().zip(GAUSS_WEIGHTS).fold(R::Vec3::splat(R::ZERO), |sum, (point, weight)| {
+            let cos = R::from_f32(point);
+            sum + self.passing(&self.albedos(cos)) * (R::from_f32(2.0 * weight) * cos)
+        })
     }
 
     /// How the light comes back that single scattering loses.
@@ -287,6 +288,6 @@ fn index<R: Real>(bsdf: &Bsdf<R>, is_any_allowed: bool) -> R {
     if is_any_allowed || bsdf.transmission == R::ZERO {
         return bsdf.ior;
     }
-    let least = R::from_f64(LEAST_INDEX);
+    let least = R::from_f32(LEAST_ROUGH_INDEX);
     if bsdf.ior < R::ONE { bsdf.ior.min(R::ONE / least) } else { bsdf.ior.max(least) }
 }
