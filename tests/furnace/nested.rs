@@ -116,29 +116,35 @@ fn ball_world(sky: f32) -> World {
     world
 }
 
+/// A body with a white surface of some roughness, `transmission` of which is clear.
+fn white_body(ior: f32, roughness: f32, transmission: f32) -> Material {
+    let Material { surface, .. } = body(ior, 0.0);
+    let luxel_scene::Surface::Principled(clear) = surface else { unreachable!() };
+    Material::principled(Principled { roughness, transmission, ..clear })
+}
+
 #[test]
 fn l03_bodies_in_bodies_are_invisible_in_a_furnace() {
-    let rough = |ior| {
-        let Material { surface, .. } = body(ior, 0.0);
-        let luxel_scene::Surface::Principled(smooth) = surface else { unreachable!() };
-        Material::principled(Principled { roughness: 0.4, ..smooth })
-    };
-    let cases: [(&str, [(f64, Material); 3]); 5] = [
+    let rough = |ior| white_body(ior, 0.4, 1.0);
+    let painted = |ior| white_body(ior, 0.2, 0.5);
+    let cases: [(&str, [(f64, Material); 3]); 6] = [
         ("nested", [(1.0, body(GLASS, 0.0)), (0.8, body(WATER, 0.0)), (0.4, body(1.0, 0.0))]),
         ("touching", [(1.0, body(GLASS, 0.0)), (0.8, body(1.0, 0.0)), (0.8, body(WATER, 0.0))]),
         ("the other way round", [(1.0, body(GLASS, 0.0)), (0.8, body(WATER, 0.0)), (0.8, body(1.0, 0.0))]),
         ("a little larger", [(1.0, body(GLASS, 0.0)), (0.81, body(WATER, 0.0)), (0.8, body(1.0, 0.0))]),
         ("rough", [(1.0, rough(GLASS)), (0.8, rough(WATER)), (0.4, rough(1.0))]),
+        ("painted", [(1.0, painted(GLASS)), (0.8, painted(WATER)), (0.4, painted(1.0))]),
     ];
     for (name, bodies) in cases {
         let mut world = ball_world(1.0);
         world.resource_mut::<RenderSettings>().max_depth = 512;
         balls(&mut world, &bodies);
-        let samples = if name == "rough" { 64 } else { 8 };
+        let spreads = ["rough", "painted"].contains(&name);
+        let samples = if spreads { 64 } else { 8 };
         let values = values(world, &mut CpuTracer::new(), samples);
         let (off, average) = (deviation(&values, 1.0), mean(&values));
         println!("{name}: off by {off:.1e}, mean {average:.6}");
-        if name == "rough" {
+        if spreads {
             assert!((average - 1.0).abs() < 3e-3, "{name}: {average}");
         } else {
             assert!(off < ROUNDING, "{name}: off by {off:e}");
@@ -225,6 +231,18 @@ fn a_camera_inside_bodies_and_too_many_bodies_do_no_harm() {
     assert_eq!(film.dropped(), 0);
     assert!(tracer.stats().counters[Counter::MediaOverflows] > 0);
     assert!(film.beauty().into_iter().flatten().all(|v| (0.1..10.0).contains(&v)));
+}
+
+#[test]
+fn l03_painted_bodies_are_invisible_on_the_gpu() {
+    let Some(gpu) = gpu_or_fail() else { return };
+    let mut world = ball_world(1.0);
+    world.resource_mut::<RenderSettings>().max_depth = 512;
+    balls(&mut world, &[(1.0, white_body(GLASS, 0.2, 0.5)), (0.8, white_body(WATER, 0.0, 0.3))]);
+    let mut tracer = GpuTracer::new(&gpu, SlicePolicy::HEADLESS).unwrap();
+    let average = mean(&values(world, &mut tracer, 16));
+    println!("mean {average:.6}");
+    assert!((average - 1.0).abs() < 3e-3, "{average}");
 }
 
 #[test]
