@@ -64,6 +64,8 @@ shared_const! {
     pub const ALBEDO_GLASS_AVERAGES: u32 = luxel_geom::albedo::GLASS_AVERAGES;
     /// Place of the index 1 on the axis of those of glass.
     pub const GLASS_MIDDLE: f32 = luxel_geom::albedo::axes::GLASS_MIDDLE as f32;
+    /// How dense the places above it are.
+    pub const GLASS_DENSITY: f32 = luxel_geom::albedo::axes::GLASS_DENSITY as f32;
     /// Share of the cosines' axis that lies about the critical angle.
     pub const CRITICAL_SHARE: f32 = luxel_geom::albedo::axes::CRITICAL_SHARE as f32;
     /// Critical cosine at which it has about half of that share.
@@ -76,7 +78,7 @@ shared_const! {
     /// the microfacet.
     pub const LEAST_ROUGH_INDEX: f32 = 1.001;
     /// Gauss and Legendre's points on [0, 1].
-    pub const GAUSS_POINTS: [f32; 4] = [0.069_431_84, 0.330_009_48, 0.669_990_5, 0.930_568_2];
+    pub const GAUSS_POINTS: [f32; 4] = [0.069_431_84, 0.330_009_5, 0.669_990_5, 0.930_568_2];
     /// Their weights.
     pub const GAUSS_WEIGHTS: [f32; 4] = [0.173_927_42, 0.326_072_58, 0.326_072_58, 0.173_927_42];
     /// Random-number blocks of the camera.

@@ -243,11 +243,11 @@ fn places_and_values_are_inverse() {
             axes::cosine_place(axes::cosine_at(place, roughness), roughness),
             axes::glass_cosine_place(axes::glass_cosine_at(place, roughness, 0.7), roughness, 0.7),
             axes::glass_cosine_place(axes::glass_cosine_at(place, roughness, 1.5), roughness, 1.5),
-            axes::thin_index_place(axes::thin_index_at(place)),
+            axes::thin_index_place(axes::thin_index_at(place, 1.0), 1.0),
             axes::glass_index_place(axes::glass_index_at(place)),
         ];
         assert!(back.iter().all(|b| (b - place).abs() < 1e-7), "{place}: {back:?}");
     }
     assert_eq!(axes::glass_index_at(axes::GLASS_MIDDLE), 1.0);
-    assert!(axes::thin_index_at(1.0f64) > 1e9 && axes::glass_index_at(0.0f64) < 1e-9);
+    assert!(axes::thin_index_at(1.0f64, 1.0) > 1e9 && axes::glass_index_at(0.0f64) < 1e-9);
 }

@@ -203,9 +203,9 @@ impl Rules {
 
     /// The average over directions of what the lookups give; of a loss its square root.
     fn average(&self, tables: &[f32], quantity: Quantity, index: f64, roughness: f64) -> f64 {
-        let mean = |value: &dyn Fn(f64) -> f64| {
-            average(&self.cells, |place| quantity.cosine_at(place, index, roughness), value)
-        };
+        let entries = (0..albedo::COSINES).map(|n| place(n, albedo::COSINES));
+        let cosines: Vec<f64> = entries.map(|at| quantity.cosine_at(at, index, roughness)).collect();
+        let mean = |value: &dyn Fn(f64) -> f64| average(&self.cells, &cosines, value);
         let conductor = |c| lookup::conductor_loss(tables, c, roughness);
         match quantity {
             Quantity::Conductor => mean(&conductor).sqrt(),
@@ -235,7 +235,7 @@ impl Quantity {
 
 /// The index at a place of the table of odds. At both ends the odds are taken in the limit.
 fn odds_index(place: f64) -> f64 {
-    axes::thin_index_at(place.max(1e-3)).min(LARGEST_INDEX)
+    axes::thin_index_at(place.max(1e-3), 1.0).min(LARGEST_INDEX)
 }
 
 /// The place of an entry of an axis.
@@ -243,21 +243,13 @@ fn place(index: u32, count: u32) -> f64 {
     if count == 1 { 0.0 } else { f64::from(index) / f64::from(count - 1) }
 }
 
-/// 2 ∫ value · cos dcos, by a rule for each cell of the cosines' axis, which `cosine_at` gives: between entries a lookup is
-/// smooth.
-fn average(rule: &Rule, cosine_at: impl Fn(f64) -> f64, value: impl Fn(f64) -> f64) -> f64 {
-    let cells = albedo::COSINES - 1;
-    let at = |place: f64| {
-        let step = 1e-6;
-        let [low, high] = [(place - step).max(0.0), (place + step).min(1.0)];
-        let slope = (cosine_at(high) - cosine_at(low)) / (high - low);
-        let cos = cosine_at(place);
-        2.0 * value(cos) * cos * slope
+/// 2 ∫ value · cos dcos, by a rule between any two `cosines` of a table: there a lookup is smooth.
+fn average(rule: &Rule, cosines: &[f64], value: impl Fn(f64) -> f64) -> f64 {
+    let cell = |low: f64, width: f64| {
+        let at = |cos: f64| 2.0 * value(cos) * cos;
+        rule.iter().map(|(x, weight)| weight * width * at(low + width * x)).sum::<f64>()
     };
-    let cell = |n: u32| {
-        rule.iter().map(|(x, weight)| weight * at((f64::from(n) + x) / f64::from(cells))).sum::<f64>()
-    };
-    (0..cells).map(cell).sum::<f64>() / f64::from(cells)
+    cosines.windows(2).map(|pair| cell(pair[0], pair[1] - pair[0])).sum()
 }
 
 /// The quadrature rule over the square of visible normals.

@@ -181,7 +181,8 @@ impl<'a> Seen<'a> {
                 loss(cos) * cos
                     / (std::f64::consts::PI * average * warp::level_hemisphere_pdf(self.alpha, cos))
             };
-            self.tint * cosines().map(quotient).fold(0.0, f64::max)
+            // A smooth surface loses most where light is all but level.
+            self.tint * cosines().map(|cos| cos.powi(3)).map(quotient).fold(0.0, f64::max)
         };
         let conductor =
             largest(lookup::conductor_loss_average(&TABLES, r), &|c| lookup::conductor_loss(&TABLES, c, r));

@@ -88,6 +88,8 @@ pub(crate) fn lossless(roughness: f32) -> Vec<(&'static str, MaterialRecord)> {
         ("index 3", opaque(roughness, 3.0)),
         ("index 10", opaque(roughness, 10.0)),
         ("infinite index", opaque(roughness, INFINITE_INDEX)),
+        ("glass of index 1.005", glass(roughness, 1.005)),
+        ("glass of index 1.01", glass(roughness, 1.01)),
         ("glass of index 1.05", glass(roughness, 1.05)),
         ("glass of index 3", glass(roughness, 3.0)),
         ("glass of index 10", glass(roughness, 10.0)),

@@ -8,7 +8,10 @@
 use crate::{Real, microfacet};
 
 /// Place of the index 1 among those of glass: denser sides lie below, so many of the intervals are theirs.
-pub const GLASS_MIDDLE: f64 = 44.0 / 64.0;
+pub const GLASS_MIDDLE: f64 = 11.0 / 21.0;
+/// How much denser than [`thin_index_place`] alone the places of glass lie above an index of 1, where the loss of low
+/// views changes fast.
+pub const GLASS_DENSITY: f64 = 2.0;
 /// Share of the cosines' axis that lies about the critical angle.
 pub const CRITICAL_SHARE: f64 = 0.5;
 /// Critical cosine at which it has half of that share, but for a tenth: there is no such angle at an index of 1.
@@ -77,6 +80,9 @@ pub fn glass_cosine_place<R: Real>(cos: R, roughness: R, eta: R) -> R {
 
 /// The cosine at a place of [`glass_cosine_place`], by bisection.
 pub fn glass_cosine_at<R: Real>(place: R, roughness: R, eta: R) -> R {
+    if eta >= R::ONE {
+        return cosine_at(place, roughness);
+    }
     let (mut low, mut high) = (R::ZERO, R::ONE);
     if place <= R::ZERO || place >= R::ONE {
         return place.clamped(low, high);
@@ -88,20 +94,22 @@ pub fn glass_cosine_at<R: Real>(place: R, roughness: R, eta: R) -> R {
     low
 }
 
-/// Place of an index as seen from the thinner side, which is at least 1: s / (s + √(1 − s)).
+/// Place of an index as seen from the thinner side, which is at least 1: d s / (d s + √(1 − s)), d being the `density` of
+/// places at 1.
 #[inline]
-pub fn thin_index_place<R: Real>(eta: R) -> R {
+pub fn thin_index_place<R: Real>(eta: R, density: R) -> R {
     let root = ((eta - R::ONE) / (eta + R::ONE)).max(R::ZERO).sqrt();
     // 1 − s² without cancellation.
     let gap = (R::from_f64(2.0) / (eta + R::ONE)).min(R::ONE);
-    root / (root + (gap / (R::ONE + root)).sqrt())
+    let dense = density * root;
+    dense / (dense + (gap / (R::ONE + root)).sqrt())
 }
 
 /// The index of at least 1 at a place.
 #[inline]
-pub fn thin_index_at<R: Real>(place: R) -> R {
+pub fn thin_index_at<R: Real>(place: R, density: R) -> R {
     let two = R::from_f64(2.0);
-    let rest = two * (R::ONE - place);
+    let rest = two * density * (R::ONE - place);
     let sum = place + (place * place + rest * rest).sqrt();
     let (root, rest) = (two * place / sum, rest / sum);
     let gap = (rest * rest * (R::ONE + root)).max(R::from_f64(LEAST_GAP));
@@ -113,7 +121,7 @@ pub fn thin_index_at<R: Real>(place: R) -> R {
 pub fn glass_index_place<R: Real>(eta: R) -> R {
     let middle = R::from_f64(GLASS_MIDDLE);
     if eta >= R::ONE {
-        return middle + (R::ONE - middle) * thin_index_place(eta);
+        return middle + (R::ONE - middle) * thin_index_place(eta, R::from_f64(GLASS_DENSITY));
     }
     let root = ((R::ONE - eta) / (R::ONE + eta)).sqrt().min(R::ONE);
     middle - middle * (R::from_f64(2.0) * root / (R::ONE + root))
@@ -124,7 +132,7 @@ pub fn glass_index_place<R: Real>(eta: R) -> R {
 pub fn glass_index_at<R: Real>(place: R) -> R {
     let middle = R::from_f64(GLASS_MIDDLE);
     if place >= middle {
-        return thin_index_at((place - middle) / (R::ONE - middle));
+        return thin_index_at((place - middle) / (R::ONE - middle), R::from_f64(GLASS_DENSITY));
     }
     let from_middle = R::ONE - place / middle;
     let root = from_middle / (R::from_f64(2.0) - from_middle);

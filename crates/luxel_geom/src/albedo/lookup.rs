@@ -93,7 +93,7 @@ pub fn rim_albedo_average<R: Real>(tables: &[f32], roughness: R) -> R {
 #[inline]
 pub fn mean_reflectance<R: Real>(tables: &[f32], cos: R, roughness: R, eta: R) -> R {
     let typical = optics::fresnel_dielectric(typical_cosine(cos, roughness), eta).reflectance;
-    let index = Between::at(axes::thin_index_place(eta), super::ODDS_INDICES);
+    let index = Between::at(axes::thin_index_place(eta, R::ONE), super::ODDS_INDICES);
     let odds = index.mix(|k| directional(tables, super::ODDS + k * super::PLANE, cos, roughness));
     let reflected = odds * typical;
     reflected / (reflected + (R::ONE - typical))
@@ -102,7 +102,7 @@ pub fn mean_reflectance<R: Real>(tables: &[f32], cos: R, roughness: R, eta: R) -
 /// (1 − [`conductor_loss`]) · (1 − [`mean_reflectance`]), what passes a coat, averaged over cosine-weighted directions.
 #[inline]
 pub fn coat_passing_average<R: Real>(tables: &[f32], roughness: R, eta: R) -> R {
-    let places = [axes::thin_index_place(eta), axes::roughness_place(roughness)];
+    let places = [axes::thin_index_place(eta, R::ONE), axes::roughness_place(roughness)];
     let sizes = [super::ODDS_INDICES, super::AVERAGE_ROUGHNESSES];
     plane(tables, super::PASSING_AVERAGES, sizes, places) * head_on_transmittance(eta)
 }

@@ -32,7 +32,7 @@ pub const PLANE: u32 = ROUGHNESSES * COSINES;
 /// Indices of refraction in the table of odds, from 1 to infinity.
 pub const ODDS_INDICES: u32 = 41;
 /// Relative indices in each glass table, from 0 to infinity; 1 is at [`axes::GLASS_MIDDLE`].
-pub const GLASS_INDICES: u32 = 129;
+pub const GLASS_INDICES: u32 = 169;
 /// Roughnesses in the averages: those of the tables, and 15 between any two.
 pub const AVERAGE_ROUGHNESSES: u32 = 16 * (ROUGHNESSES - 1) + 1;
 
