@@ -88,7 +88,7 @@ pub(crate) fn lossless(roughness: f32) -> Vec<(&'static str, MaterialRecord)> {
         ("index 3", opaque(roughness, 3.0)),
         ("index 10", opaque(roughness, 10.0)),
         ("infinite index", opaque(roughness, INFINITE_INDEX)),
-        ("glass of index 1.005", glass(roughness, 1.005)),
+        ("glass of index 1.002", glass(roughness, 1.002)),
         ("glass of index 1.01", glass(roughness, 1.01)),
         ("glass of index 1.05", glass(roughness, 1.05)),
         ("glass of index 3", glass(roughness, 3.0)),
@@ -115,6 +115,7 @@ pub(crate) fn layered(roughness: f32) -> Vec<(&'static str, MaterialRecord)> {
         ("coated metal", coated(metal(roughness), 1.0, 0.2)),
         ("coated glass", coated(glass(roughness, 1.5), 1.0, 0.3)),
         ("coated thin", coated(thin(roughness), 1.0, 0.3)),
+        ("coated half clear", coated(half_clear(roughness, 1.5), 1.0, 0.3)),
         ("mixed", mixed(roughness)),
         ("white mixed", MaterialRecord { color: [1.0; 3], ..mixed(roughness) }),
     ]

@@ -2,9 +2,11 @@
 //!
 //! A lobe changes fastest where the cosine is about α, so the cosine's axis gives half of its length to cosines up to
 //! some 4α. Seen from inside glass the loss has a ridge where total reflection begins; there the other half of the axis
-//! lies, and the ridge at nearly one place for all indices, so that it is kept between them. Near η = 1 Fresnel's equations change with the root of η − 1, so the axis of the index works on
-//! s = √((η − 1) / (η + 1)), the root of the amplitude that is reflected head-on. It reaches from s = 0 to an infinite
-//! index at s = 1, and is dense at both ends; seen from the denser side, total reflection wants more places.
+//! lies, and the ridge at nearly one place for all indices, so that it is kept between them. Near η = 1 Fresnel's
+//! equations change with the root of η − 1, so the axis of the index works on s = √((η − 1) / (η + 1)), the root of the
+//! amplitude that is reflected head-on. It reaches from s = 0 to an infinite index at s = 1, and is dense at both ends;
+//! seen from the denser side, total reflection wants more places. What is looked up is furthest off between roughnesses,
+//! at indices near 1, so these have more places than the cosines.
 use crate::{Real, microfacet};
 
 /// Place of the index 1 among those of glass: denser sides lie below, so many of the intervals are theirs.

@@ -24,17 +24,17 @@ pub mod axes;
 pub mod lookup;
 
 /// Cosines in every table.
-pub const COSINES: u32 = 64;
+pub const COSINES: u32 = 40;
 /// Roughnesses in every table.
-pub const ROUGHNESSES: u32 = 32;
+pub const ROUGHNESSES: u32 = 64;
 /// Entries of a table with the axes roughness and cosine.
 pub const PLANE: u32 = ROUGHNESSES * COSINES;
 /// Indices of refraction in the table of odds, from 1 to infinity.
 pub const ODDS_INDICES: u32 = 41;
 /// Relative indices in each glass table, from 0 to infinity; 1 is at [`axes::GLASS_MIDDLE`].
 pub const GLASS_INDICES: u32 = 169;
-/// Roughnesses in the averages: those of the tables, and 15 between any two.
-pub const AVERAGE_ROUGHNESSES: u32 = 16 * (ROUGHNESSES - 1) + 1;
+/// Roughnesses in the averages: those of the tables, and 7 between any two.
+pub const AVERAGE_ROUGHNESSES: u32 = 8 * (ROUGHNESSES - 1) + 1;
 
 /// What clear microfacets reflect; what they do not reflect they let pass, and where nothing can pass they reflect all.
 ///

@@ -1,7 +1,8 @@
 //! The metallic-roughness model of glTF 2.0 with `KHR_materials_` transmission, volume, ior, specular and clearcoat.
 //!
 //! [`layers`] says what lies on what. A direction is taken from one of five lobes: the coat's microfacets, the base's
-//! (mirrored, or refracted: [`transmission`]), the diffuse base, and what comes back of lost light, on either side. The weight of a direction is all of `f · |cos|` over all of the density.
+//! (mirrored, or refracted: [`transmission`]), the diffuse base, and what comes back of lost light, on either side. The
+//! weight of a direction is all of `f · |cos|` over all of the density.
 use luxel_flat::{Counter, Counters};
 use luxel_geom::{Real, Vector, frame::Frame, microfacet, optics, warp};
 
