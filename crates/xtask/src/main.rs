@@ -4,7 +4,7 @@
 //! cargo xtask test               set up a fresh machine, then run every test
 //! cargo xtask ci                 everything that must pass before a change is accepted
 //! cargo xtask generate [--check] write (or compare) the shader module made from the Rust records
-//! cargo xtask generate albedo    compute the albedo tables of rough surfaces (six minutes)
+//! cargo xtask generate albedo    compute the albedo tables of rough surfaces (eight minutes)
 //! cargo xtask soak [NAMES…]      run the hard cases at full size, in release (an hour or so)
 //! cargo xtask bench [ARGS…]      run the benches and keep their results in benches/results
 //! ```

@@ -26,9 +26,9 @@ impl<R: Real> Chances<R> {
         let (under_coat, kept) = (R::ONE - here.coat, R::ONE - here.loss);
         let color = layers.bsdf.color;
         // Of what clear microfacets keep, all that is not mirrored passes.
-        let passing = (one - here.glass_loss - here.mirrored).max(R::Vec3::splat(R::ZERO));
+        let refracted = (one - here.glass_loss - here.mirrored).max(R::Vec3::splat(R::ZERO));
         let metal = fresnel::metal(layers.bsdf, here.cos) * (kept * layers.metal);
-        let facets = here.mirrored * layers.covered + color * passing * layers.clear + metal;
+        let facets = here.mirrored * layers.covered + color * refracted * layers.clear + metal;
         let lost = here.glass_loss * layers.clear;
         let returned = returns.metal * here.loss + lost * (one - returns.through);
         let through = lost * returns.through * color;
