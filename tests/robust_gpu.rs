@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use asset::asset;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, UVec3, Vec3};
 use luxel_cpu::CpuTracer;
 use luxel_engine::{BackendChoice, ChosenTracer, Engine, RenderEvent, RenderJob};
 use luxel_film::tracer::{Backend, TraceError, TraceRequest, Tracer};
@@ -19,7 +19,10 @@ use luxel_film::{Display, ToneMap, View};
 use luxel_flat::{Counter, FlatScene, Heap, Triangle};
 use luxel_gpu::{Gpu, GpuRequest, LimitsTier, SlicePolicy, SoftwarePolicy, testing::gpu_or_fail};
 use luxel_render::{GpuTracer, NODES};
-use luxel_scene::{Camera, Material, RenderSettings, Sphere, SphereAccel, SphereCloud, Transform};
+use luxel_scene::{
+    Assets, Camera, Material, RenderSettings, Sphere, SphereAccel, SphereCloud, Transform, VolumeAsset,
+    VolumeSource, Voxel, VoxelGrid, VoxelVolume,
+};
 use luxel_testkit::Random;
 use traced::trace;
 
@@ -112,18 +115,20 @@ fn a_lost_device_gives_errors_and_no_panic() {
     assert!(tracer.resolve(&Display::default()).is_err());
 }
 
-#[test]
-fn a_scene_that_does_not_fit_is_refused_clearly_and_the_next_one_taken() {
-    // The least that any adapter offers: 128 MiB per binding.
+/// A device with the least that any adapter offers: 128 MiB per binding.
+fn least_gpu() -> Option<Gpu> {
     let request = GpuRequest {
         software: SoftwarePolicy::Allow,
         tier: LimitsTier::WebGpuDefault,
         ..GpuRequest::from_env()
     };
-    if gpu_or_fail().is_none() {
-        return;
-    }
-    let mut tracer = gpu_tracer(&Gpu::open(&request).unwrap());
+    gpu_or_fail().map(|_| Gpu::open(&request).unwrap())
+}
+
+#[test]
+fn a_scene_that_does_not_fit_is_refused_clearly_and_the_next_one_taken() {
+    let Some(gpu) = least_gpu() else { return };
+    let mut tracer = gpu_tracer(&gpu);
     let scene = asset("one_of_each.ron", SIZE).bake().unwrap();
     let count = (128 << 20) / size_of::<Triangle>() + 1;
     let triangles = Heap::from_records(vec![Triangle::default(); count], scene.revision + 1);
@@ -139,6 +144,44 @@ fn a_scene_that_does_not_fit_is_refused_clearly_and_the_next_one_taken() {
     let request = TraceRequest::new(Arc::new(small));
     let film = trace(&mut tracer, &request, 1).film;
     assert_eq!(film.samples(), 1);
+}
+
+/// A volume of 2048³ with few voxels, but a branch of four nodes for each: more than 128 MiB of nodes.
+fn too_large_a_volume() -> Engine {
+    let mut world = luxel_scene::empty_world();
+    let settings = RenderSettings { width: 16, height: 16, max_depth: 2, ..RenderSettings::default() };
+    world.insert_resource(settings);
+    luxel_scene::spawn(&mut world, (Camera::pinhole(0.7), Transform::at(DVec3::Z * 4.0)));
+    let cell = |i: u32| [i % 256, i / 256 % 256, i / 65_536].map(|c| 8 * c as u16);
+    let voxels = (0..64 * 65_536).map(|i| Voxel { cell: cell(i), palette: 0 }).collect();
+    let palette = vec![Material::lambert(Vec3::splat(0.5))];
+    let grid = VoxelGrid { size: UVec3::splat(2048), palette, voxels };
+    let volume = VolumeAsset { source: VolumeSource::Menger { level: 0 }, grid };
+    let volume = world.resource_mut::<Assets>().insert_volume(volume);
+    luxel_scene::spawn(&mut world, (VoxelVolume { volume }, Transform::default()));
+    Engine::over(world, Path::new("large volume")).unwrap()
+}
+
+#[test]
+fn a_volume_larger_than_a_binding_leaves_the_job_to_the_cpu() {
+    let Some(gpu) = least_gpu() else { return };
+    let job = RenderJob { spp: Some(1), ..RenderJob::default() };
+    let chosen = ChosenTracer { tracer: Box::new(gpu_tracer(&gpu)), because: "the test says so".to_owned() };
+    let mut engine = too_large_a_volume();
+    let rendered = engine.render_with(chosen, &job, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(rendered.facts.backend, Backend::Cpu);
+    let bytes = rendered.scene.svo_nodes.bytes();
+    assert!(bytes > 128 << 20);
+    assert_eq!(
+        rendered.notices,
+        [format!(
+            "the GPU gave up (out of memory: buffer 'svo_nodes (the voxel volumes)' takes {bytes} bytes, more than the \
+             134217728 bytes that a shader can read on this GPU); the CPU goes on with the same job"
+        )]
+    );
+    let on_cpu = RenderJob { backend: BackendChoice::Cpu, ..job };
+    let expected = engine.render(&on_cpu, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert!(rendered.film == expected.film, "the CPU did not take the same job");
 }
 
 #[test]

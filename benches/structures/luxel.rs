@@ -110,7 +110,11 @@ pub(crate) struct LuxelSvo(Placed);
 
 impl LuxelSvo {
     pub(crate) fn build(voxels: &[SvoVoxel], size: UVec3) -> Self {
-        let Svo { nodes, levels, bounds } = build_svo(voxels, size).unwrap();
+        Self::over(build_svo(voxels, size).unwrap())
+    }
+
+    pub(crate) fn over(svo: Svo) -> Self {
+        let Svo { nodes, colors: _, levels, bounds } = svo;
         let node_count = nodes.len() as u32;
         let instance = Instance { kind: KIND_VOXELS, node_count, levels, ..Instance::default() };
         let scene = FlatScene { svo_nodes: Heap::from_records(nodes, 1), ..FlatScene::default() };

@@ -3,7 +3,7 @@
 //! Every structure tests primitives with the same functions of `luxel_geom`, so that the rates compare trees and
 //! traversals, not triangle tests; and before anything is measured all of them must find the same hits. Closest hits
 //! run on one thread, builds on all.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 mod bvh_crate;
 mod deforming;
 mod inputs;
@@ -12,6 +12,7 @@ mod luxel;
 mod moving;
 mod obvhs_crate;
 mod primitive;
+mod terrain;
 
 use std::time::Duration;
 
@@ -41,6 +42,7 @@ fn main() {
     moving::bench(&mut criterion, &inputs::sphere_cloud());
     instances::bench(&mut criterion);
     bench_voxels(&mut criterion);
+    terrain::bench(&mut criterion);
     criterion.final_summary();
 }
 

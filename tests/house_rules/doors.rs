@@ -17,7 +17,7 @@ struct Room {
 const GUARDED: [&str; 6] = ["wgpu", "naga", "bevy_ecs", "egui", "winit", "clap"];
 
 #[rustfmt::skip]
-const ROOMS: [Room; 15] = [
+const ROOMS: [Room; 16] = [
     Room { name: "luxel_geom", rooms: &[], guarded: &[] },
     Room { name: "luxel_flat", rooms: &["luxel_geom"], guarded: &[] },
     Room { name: "luxel_accel", rooms: &["luxel_geom", "luxel_flat"], guarded: &[] },
@@ -35,7 +35,12 @@ const ROOMS: [Room; 15] = [
         ],
         guarded: &["bevy_ecs"],
     },
-    Room { name: "luxel_study", rooms: &["luxel_engine", "luxel_scene", "luxel_geom"], guarded: &["bevy_ecs"] },
+    Room { name: "luxel_lod", rooms: &["luxel_geom", "luxel_flat", "luxel_accel", "luxel_cpu"], guarded: &[] },
+    Room {
+        name: "luxel_study",
+        rooms: &["luxel_engine", "luxel_lod", "luxel_accel", "luxel_scene", "luxel_geom"],
+        guarded: &["bevy_ecs"],
+    },
     Room { name: "luxel_testkit", rooms: &["luxel_geom", "luxel_flat"], guarded: &[] },
     Room { name: "luxel_cli", rooms: &["luxel_engine", "luxel_study"], guarded: &["clap"] },
     Room { name: "luxel", rooms: &["luxel_cli"], guarded: &[] },

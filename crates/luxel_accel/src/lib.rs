@@ -9,7 +9,7 @@
 //! | BVH over spheres | [`SphereBvh`], edited in place | [`BvhNode`](luxel_flat::BvhNode), [`LeafSphere`](luxel_flat::LeafSphere) |
 //! | any of these three, or none | [`SphereStructure`] | as above |
 //! | light tree | [`build_light_tree`] | [`LightNode`](luxel_flat::LightNode) |
-//! | voxel octree | [`build_svo`] | [`SvoNode`](luxel_flat::SvoNode) |
+//! | voxel octree | [`build_svo`], edited in place by [`SvoEditor`] | [`SvoNode`](luxel_flat::SvoNode) |
 //!
 //! Exactness rule: a stored box is the exact union (component-wise minimum and maximum) of the outset boxes
 //! that `luxel_geom` gives its primitives. Parents therefore contain their children exactly, and the interval of
@@ -33,6 +33,7 @@ mod bvh;
 mod cells;
 mod error;
 mod light_tree;
+pub mod lod_error;
 mod mesh;
 mod octree;
 mod slots;
@@ -55,6 +56,6 @@ pub use mesh::{MAX_REFITS, MeshBvh, REBUILD_RATIO, Refit, build_mesh, mesh_trian
 pub use octree::{OctreeOptions, RootCell, SphereOctree, octree_depth, validate_octree};
 pub use sphere_bvh::SphereBvh;
 pub use sphere_structure::{SphereOptions, SphereStructure};
-pub use svo::{Svo, SvoVoxel, build_svo};
+pub use svo::{Svo, SvoBrush, SvoEditor, SvoPaint, SvoVoxel, build_svo, solid_share};
 pub use tlas::{build_tlas, validate_tlas};
 pub use work::StructureWork;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{UVec3, Vec3};
-use luxel_accel::{AccelError, Svo, SvoVoxel, build_svo};
+use luxel_accel::{AccelError, Svo, SvoVoxel, build_svo, solid_share};
 use luxel_geom::voxel;
 use luxel_testkit::Random;
 use proptest::prelude::*;
@@ -22,11 +22,11 @@ fn cells(svo: &Svo) -> Cells {
     let mut open = if svo.nodes.is_empty() { vec![] } else { vec![(0, [0u16; 3])] };
     while let Some((index, cell)) = open.pop() {
         let node = svo.nodes[index];
-        if node.child_mask == 0 {
-            let [r, g, b, _] = node.color.to_le_bytes();
-            cells.insert(cell, ([r, g, b], node.material));
+        if node.child_mask() == 0 {
+            let [r, g, b, _] = svo.colors[index].to_le_bytes();
+            cells.insert(cell, ([r, g, b], node.material()));
         }
-        let octants = (0..8u16).filter(|o| node.child_mask >> o & 1 == 1);
+        let octants = (0..8u16).filter(|o| node.child_mask() >> o & 1 == 1);
         for (child, octant) in (node.first_child as usize..).zip(octants) {
             let half = |axis: usize| octant >> axis & 1;
             open.push((child, std::array::from_fn(|axis| 2 * cell[axis] + half(axis))));
@@ -37,11 +37,7 @@ fn cells(svo: &Svo) -> Cells {
 
 fn voxel_at(cell: [u16; 3]) -> SvoVoxel {
     let [x, y, z] = cell.map(|c| c as u8);
-    SvoVoxel {
-        cell,
-        color: [x.wrapping_mul(37), y.wrapping_mul(59), z.wrapping_mul(83)],
-        material: u32::from(x ^ y),
-    }
+    SvoVoxel { cell, color: [x.wrapping_mul(37), y.wrapping_mul(59), z.wrapping_mul(83)], material: x ^ y }
 }
 
 fn grid(edge: u16, is_solid: impl Fn([u16; 3]) -> bool) -> Vec<SvoVoxel> {
@@ -52,7 +48,7 @@ fn grid(edge: u16, is_solid: impl Fn([u16; 3]) -> bool) -> Vec<SvoVoxel> {
 }
 
 fn expected(voxels: &[SvoVoxel]) -> Cells {
-    voxels.iter().map(|v| (v.cell, (v.color, v.material))).collect()
+    voxels.iter().map(|v| (v.cell, (v.color, u32::from(v.material)))).collect()
 }
 
 #[test]
@@ -71,8 +67,12 @@ fn v11_one_voxel() {
     let svo = build(&[voxel_at([5, 1, 6])], UVec3::new(7, 2, 7));
     assert_eq!((svo.nodes.len(), svo.levels), (4, 3));
     assert_eq!(cells(&svo), expected(&[voxel_at([5, 1, 6])]));
-    assert_eq!(svo.nodes.iter().map(|n| n.color >> 24).collect::<Vec<_>>(), [1, 4, 32, 255]);
-    assert!(svo.nodes.iter().all(|n| n.color & 0xff_ffff == svo.nodes[3].color & 0xff_ffff));
+    // V09: one voxel in 8³ is told from none.
+    let shares = svo.colors.iter().map(|color| solid_share(*color));
+    for (share, exact) in shares.zip([1.0 / 512.0, 1.0 / 64.0, 1.0 / 8.0, 1.0]) {
+        assert!((share - exact).abs() < 1e-3, "{share} for {exact}");
+    }
+    assert!(svo.colors.iter().all(|color| color & 0xff_ffff == svo.colors[3] & 0xff_ffff));
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn v11_a_full_cube() {
     let voxels = grid(64, |_| true);
     let svo = build(&voxels, UVec3::splat(64));
     assert_eq!(svo.nodes.len(), (8usize.pow(7) - 1) / 7);
-    assert!(svo.nodes.iter().all(|n| n.color >> 24 == 255));
+    assert!(svo.colors.iter().all(|color| color >> 24 == 255));
     assert_eq!(cells(&svo), expected(&voxels));
     assert_eq!(svo.bounds, voxel::bounds([0; 3], 64));
 }
@@ -90,7 +90,13 @@ fn v11_a_checkerboard() {
     let voxels = grid(32, |[x, y, z]| (x + y + z) % 2 == 0);
     let svo = build(&voxels, UVec3::splat(32));
     assert_eq!(svo.nodes.len(), 4 * 8usize.pow(4) + (8usize.pow(5) - 1) / 7);
-    assert!(svo.nodes.iter().filter(|n| n.child_mask != 0).all(|n| n.color >> 24 == 128));
+    assert!(
+        svo.nodes
+            .iter()
+            .zip(&svo.colors)
+            .filter(|(n, _)| n.child_mask() != 0)
+            .all(|(_, color)| color >> 24 == 180)
+    );
     assert_eq!(cells(&svo), expected(&voxels));
 }
 
@@ -102,7 +108,7 @@ fn v11_the_far_corners_of_2048_cubed() {
     assert_eq!((svo.levels, svo.nodes.len()), (11, 1 + 8 * 11));
     assert_eq!(cells(&svo), expected(&voxels));
     assert_eq!(svo.bounds, voxel::bounds([0; 3], 2048));
-    assert_eq!(svo.nodes[0].color >> 24, 1);
+    assert_eq!(svo.colors[0] >> 24, 1);
 }
 
 #[test]
@@ -147,9 +153,9 @@ proptest! {
 
     #[test]
     fn any_cells_come_back(
-        cells_in in proptest::collection::vec((0u16..40, 0u16..3, 0u16..17, any::<[u8; 3]>(), any::<u32>()), 0..300),
+        cells_in in proptest::collection::vec((0u16..40, 0u16..3, 0u16..17, any::<[u8; 3]>(), any::<u8>()), 0..300),
     ) {
-        let voxel = |&(x, y, z, color, material): &(u16, u16, u16, [u8; 3], u32)| SvoVoxel { cell: [x, y, z], color, material };
+        let voxel = |&(x, y, z, color, material): &(u16, u16, u16, [u8; 3], u8)| SvoVoxel { cell: [x, y, z], color, material };
         let voxels: Vec<SvoVoxel> = cells_in.iter().map(voxel).collect();
         let svo = build_svo(&voxels, UVec3::new(40, 3, 17)).unwrap();
         prop_assert_eq!(svo.validate(), Ok(()));

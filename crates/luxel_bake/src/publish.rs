@@ -80,6 +80,7 @@ fn differs(new: &FlatScene, last: &FlatScene) -> bool {
         || heap(&new.spheres, &last.spheres, since)
         || heap(&new.triangles, &last.triangles, since)
         || heap(&new.svo_nodes, &last.svo_nodes, since)
+        || heap(&new.svo_colors, &last.svo_colors, since)
         || heap(&new.materials, &last.materials, since)
         || heap(&new.triangle_attributes, &last.triangle_attributes, since)
         || heap(&new.textures, &last.textures, since)
@@ -115,6 +116,7 @@ impl Parts<'_> {
             triangles: heaps.triangles.heap.clone(),
             triangle_attributes: heaps.triangle_attributes.heap.clone(),
             svo_nodes: heaps.svo_nodes.heap.clone(),
+            svo_colors: heaps.svo_colors.clone(),
             materials: heaps.materials.records.heap.clone(),
             textures: heaps.textures.heap.clone(),
             texels: heaps.texels.heap.clone(),

@@ -214,6 +214,7 @@ fn bytes(scene: &FlatScene) -> Vec<(&'static str, u64)> {
         ("leaf_spheres", scene.leaf_spheres.bytes()),
         ("triangles", scene.triangles.bytes()),
         ("svo_nodes", scene.svo_nodes.bytes()),
+        ("svo_colors", scene.svo_colors.bytes()),
         ("materials", scene.materials.bytes()),
         ("triangle_attributes", scene.triangle_attributes.bytes()),
         ("textures", scene.textures.bytes()),

@@ -3,12 +3,9 @@
 //! Every texel of the small image is the mean of the part of the large one that it covers, colours mixed as light:
 //! an image with the sRGB curve is decoded before and encoded after.
 
-/// The transfer function of IEC 61966-2-1, from light to code.
-pub(crate) fn srgb_encode(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
-}
+use luxel_geom::srgb::srgb_encode;
 
-/// Its inverse.
+/// Linear light of a code value in [0, 1] (IEC 61966-2-1).
 pub(crate) fn srgb_decode(code: f32) -> f32 {
     if code <= 0.040_45 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
 }

@@ -40,7 +40,8 @@ fn validate_volumes(world: &World, heaps: &Heaps) -> Result<(), BakeError> {
     for (_, _, volume) in world.get_resource::<Built<VolumeAsset>>().iter().flat_map(|built| built.iter()) {
         let bounds: Aabb<f32> = volume.bounds;
         let nodes = heaps.svo_nodes.heap.as_slice()[volume.nodes.range()].to_vec();
-        Svo { nodes, levels: volume.levels, bounds }.validate()?;
+        let colors = heaps.svo_colors.as_slice()[volume.nodes.range()].to_vec();
+        Svo { nodes, colors, levels: volume.levels, bounds }.validate()?;
     }
     Ok(())
 }

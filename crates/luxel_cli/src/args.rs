@@ -7,6 +7,7 @@ use luxel_engine::{
     AovKind, BackendChoice, LightSampling, MAX_DEPTH, MeshAccel, MeshLevels, MeshQuality, QUALITIES, Quality,
     SphereAccel, ToneMap, View,
 };
+use luxel_study::voxel::ErrorMethod;
 
 use crate::values;
 
@@ -295,6 +296,14 @@ pub(crate) enum Study {
     /// of the bunny, or the model of FILE. The whole takes about half an hour, with --quick less than three minutes on
     /// two cores. Files of an earlier study in DIR, Ctrl-C and runs.jsonl.part are treated as by the octree study.
     Bvh(BvhArgs),
+    /// Voxel octrees with error-aware level of detail: seed document 3, made again
+    ///
+    /// Writes runs.jsonl (a line per picture), runs.csv and voxel.html to DIR. Its four landscapes of 2048³ cells are made
+    /// once and kept in the cache folder (LUXEL_CACHE, or luxel in the user's); with --quick it is one of 512³, in less than
+    /// three minutes on two cores. Ctrl-C stops and writes the page with what there is; the next study in DIR goes on
+    /// from there. With --error-table it writes instead what a node hides from each direction of a file, for every set of
+    /// children.
+    Voxel(VoxelArgs),
 }
 
 /// What every study takes.
@@ -351,6 +360,45 @@ pub(crate) struct BvhArgs {
     /// Folder to write to; made if it is missing
     #[arg(long, value_name = "DIR", default_value = "bvh-study")]
     pub(crate) out: PathBuf,
+}
+
+/// Options of `luxel study voxel`.
+#[derive(Args)]
+#[command(after_help = after_help!("  \
+  luxel study voxel --quick
+  luxel study voxel --out out
+  luxel study voxel --from out/runs.jsonl --out again
+  luxel study voxel --error-table exact --directions directions.csv -o errors.csv"))]
+pub(crate) struct VoxelArgs {
+    /// One landscape of 512³ cells instead of four of 2048³
+    #[arg(long)]
+    pub(crate) quick: bool,
+
+    /// Measure nothing: make table and page again from this runs.jsonl
+    #[arg(long, value_name = "RUNS", conflicts_with = "quick")]
+    pub(crate) from: Option<PathBuf>,
+
+    /// Folder to write to; made if it is missing
+    #[arg(long, value_name = "DIR", default_value = "voxel-study")]
+    pub(crate) out: PathBuf,
+
+    /// Write a table of errors: a row for every direction, a column for each of the 256 sets of children (bit i stands for
+    /// child i: x lowest, then y, then z). Errors are found by casting 512² rays, from nine coefficients of spherical
+    /// harmonics, or by exact areas
+    #[arg(long, value_name = "METHOD", requires_all = ["directions", "output"], conflicts_with_all = ["quick", "from", "out"],
+        value_parser = values::named(vec![
+        ("raycast", ErrorMethod::RayCast), ("sh9", ErrorMethod::Sh9), ("exact", ErrorMethod::Exact),
+    ]))]
+    pub(crate) error_table: Option<ErrorMethod>,
+
+    /// Directions of the table of errors: rows of x, y, z of any length. If names stand above them, numbers of sets stand
+    /// above the table
+    #[arg(long, value_name = "CSV", requires = "error_table")]
+    pub(crate) directions: Option<PathBuf>,
+
+    /// Where to write the table of errors
+    #[arg(short, long, value_name = "CSV", requires = "error_table")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 /// Backends that a study measures.

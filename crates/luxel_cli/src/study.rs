@@ -5,9 +5,10 @@ use std::path::Path;
 use luxel_engine::{BackendChoice, ExitCode};
 use luxel_study::bvh::{self, BunnyModel};
 use luxel_study::octree;
+use luxel_study::voxel::{self, Directions, ErrorMethod};
 use luxel_study::{Origin, Studied, StudyError, StudyEvent, StudyObserver};
 
-use crate::args::{BvhArgs, OctreeArgs, Study, StudyArgs, StudyBackends, StudyOptions};
+use crate::args::{BvhArgs, OctreeArgs, Study, StudyArgs, StudyBackends, StudyOptions, VoxelArgs};
 use crate::error::{CliError, one_line};
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
@@ -21,6 +22,7 @@ pub(crate) fn study(args: &StudyArgs) -> Result<ExitCode, CliError> {
     let line = match &args.study {
         Study::Octree(args) => octree(args)?,
         Study::Bvh(args) => bvh(args)?,
+        Study::Voxel(args) => voxel(args)?,
     };
     reply::print_text(&line)?;
     Ok(ExitCode::Done)
@@ -56,11 +58,47 @@ fn bvh(args: &BvhArgs) -> Result<String, CliError> {
     Ok(last_line(&studied))
 }
 
+fn voxel(args: &VoxelArgs) -> Result<String, CliError> {
+    if let (Some(method), Some(directions), Some(output)) = (args.error_table, &args.directions, &args.output)
+    {
+        return voxel_errors(method, directions, output);
+    }
+    if let Some(list) = &args.from {
+        return Ok(last_line(&voxel::redo(list, &args.out)?));
+    }
+    let plan = if args.quick { voxel::Plan::quick() } else { voxel::Plan::full() };
+    let studied = measure("voxel study", |origin, observer| voxel::run(&plan, origin, &args.out, observer))?;
+    Ok(last_line(&studied))
+}
+
+fn voxel_errors(method: ErrorMethod, directions: &Path, output: &Path) -> Result<String, CliError> {
+    let directions = Directions::read(directions)?;
+    let rows =
+        observed("error table", |observer| voxel::write_errors(&directions, method, output, observer))?;
+    Ok(match rows {
+        Some(rows) => format!("wrote {}: errors along {rows} directions", output.display()),
+        None => "stopped; nothing was written".to_owned(),
+    })
+}
+
 /// Runs a study under a line of progress, until it is over or interrupted.
 fn measure<R>(
     name: &str,
     run: impl FnOnce(&Origin, &mut StudyObserver<'_>) -> Result<Studied<R>, StudyError>,
 ) -> Result<Studied<R>, CliError> {
+    let origin = Origin::now(COMMIT.map(str::to_owned));
+    let studied = observed(name, |observer| run(&origin, observer))?;
+    if !studied.is_complete && !studied.files.is_empty() {
+        reply::note("interrupted; what there is was written");
+    }
+    Ok(studied)
+}
+
+/// Runs something long under a line of progress, until it is over or interrupted.
+fn observed<T>(
+    name: &str,
+    run: impl FnOnce(&mut StudyObserver<'_>) -> Result<T, StudyError>,
+) -> Result<T, CliError> {
     let interrupt = Interrupt::listen()?;
     let progress = ProgressLine::new(Path::new(name));
     let mut observer = |event: &StudyEvent| {
@@ -70,11 +108,7 @@ fn measure<R>(
         }
         if interrupt.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let studied = run(&Origin::now(COMMIT.map(str::to_owned)), &mut observer)?;
-    if !studied.is_complete && !studied.files.is_empty() {
-        progress.note("interrupted; what there is was written");
-    }
-    Ok(studied)
+    Ok(run(&mut observer)?)
 }
 
 fn backends(options: &StudyOptions) -> &'static [BackendChoice] {

@@ -27,6 +27,7 @@ pub mod query;
 pub mod shade;
 pub mod sky;
 pub mod surface;
+pub mod svo_walk;
 pub mod texture;
 pub mod tracer;
 

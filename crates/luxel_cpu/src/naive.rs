@@ -8,7 +8,7 @@ use luxel_geom::{Ray, Real, SlabRay};
 
 use crate::alpha::passes_alpha;
 use crate::hit::PrimitiveHit;
-use crate::{Exclusion, Hit, cloud, instance, mesh, volume};
+use crate::{Exclusion, Hit, cloud, instance, mesh, svo_walk, volume};
 
 /// A scene prepared for exhaustive search.
 pub struct Naive<'a> {
@@ -100,11 +100,11 @@ fn solid_voxels(scene: &FlatScene, instance: &Instance) -> Vec<SolidVoxel> {
     let mut open = vec![(0u32, [0u32; 3])];
     while let Some((index, cell)) = open.pop() {
         let node = nodes[index as usize];
-        if node.child_mask == 0 {
+        if node.child_mask() == 0 {
             solid.push(SolidVoxel { slot: instance.node_first + index, cell, node });
         }
-        for child in (0..8).filter(|child| node.child_mask & (1 << child) != 0) {
-            open.push((volume::child_node(&node, child), volume::child_cell(cell, child)));
+        for child in (0..8).filter(|child| node.child_mask() & (1 << child) != 0) {
+            open.push((svo_walk::child_node(&node, child), svo_walk::child_cell(cell, child)));
         }
     }
     solid

@@ -1,51 +1,33 @@
-//! Hits in a voxel volume: its sparse octree, front to back by the ray's octant.
-//!
-//! Boxes come from integer cells, so that a node's box contains its children's exactly. The stack holds one
-//! node per level; which sibling is next follows from the cell's low bits.
-use luxel_flat::{Counter, Counters, Instance, MAX_SVO_DEPTH, SvoNode};
+//! Hits in a voxel volume: the solid cells that a ray meets on its way through the octree.
+use luxel_flat::{Counter, Counters, Instance, SvoNode};
 use luxel_geom::{Real, SlabRay, voxel};
 
 use crate::Exclusion;
-use crate::cloud::octant;
 use crate::hit::PrimitiveHit;
 use crate::query::{Query, Search};
+use crate::svo_walk::{Step, walk};
 
 /// The wanted voxel along a ray in the volume's space.
 pub fn intersect<R: Real>(query: &Query<'_, R>, counters: &mut Counters) -> Option<PrimitiveHit<R>> {
     let instance = query.instance;
-    let nodes = &query.scene.svo_nodes.as_slice()[instance.node_first as usize..];
-    let octant = octant(&query.ray);
+    let all = query.scene.svo_nodes.as_slice();
+    let nodes = &all[instance.node_first as usize..][..instance.node_count as usize];
     let mut search = Search::new(query);
-    let mut stack = [0u32; MAX_SVO_DEPTH as usize + 1];
-    let (mut depth, mut cell, mut rank) = (0u32, [0u32; 3], 0);
-    if instance.node_count == 0 || !enters(cell, 1 << instance.levels, &search.ray, counters) {
-        return None;
-    }
-    loop {
-        let node = &nodes[stack[depth as usize] as usize];
-        if node.child_mask == 0 {
-            counters[Counter::VoxelTests] += 1;
-            let slot = instance.node_first + stack[depth as usize];
-            search.offer(intersect_voxel(node, slot, cell, instance, &search.ray, &search.exclusion));
-            if search.is_over() {
-                return search.best;
-            }
+    let (mut node_count, mut test_count) = (0, 0);
+    walk(nodes, instance.levels, &query.ray, |entered| {
+        node_count += 1;
+        if entered.node.child_mask() != 0 {
+            return Step::Down;
         }
-        let child_edge = (1 << (instance.levels - depth)) / 2;
-        if let Some(child) = next_child(node, cell, child_edge, rank, octant, &search.ray, counters) {
-            depth += 1;
-            stack[depth as usize] = child_node(node, child);
-            cell = child_cell(cell, child);
-            rank = 0;
-        } else if depth == 0 {
-            return search.best;
-        } else {
-            let child = cell[0] & 1 | (cell[1] & 1) << 1 | (cell[2] & 1) << 2;
-            rank = (child ^ octant) + 1;
-            cell = cell.map(|c| c >> 1);
-            depth -= 1;
-        }
-    }
+        test_count += 1;
+        let slot = instance.node_first + entered.index;
+        let (ray, exclusion) = (&search.ray, &search.exclusion);
+        search.offer(intersect_voxel(entered.node, slot, entered.cell, instance, ray, exclusion));
+        if search.is_over() { Step::End } else { Step::Past(search.ray.t_max) }
+    });
+    counters[Counter::SvoNodes] += node_count;
+    counters[Counter::VoxelTests] += test_count;
+    search.best
 }
 
 /// Tests one solid voxel.
@@ -65,7 +47,7 @@ pub fn intersect_voxel<R: Real>(
         uv: [R::from_f64(f64::from(hit.face)), R::ZERO],
         slot,
         primitive,
-        material: instance.material_first + node.material,
+        material: instance.material_first + node.material(),
     })
 }
 
@@ -85,41 +67,10 @@ pub fn voxel_cell(id: u32, levels: u32, z: f32) -> [u32; 3] {
     [id & mask, id >> levels & mask, low | lost << known & mask]
 }
 
-/// The node of an existing child, relative to the volume.
-#[inline]
-pub fn child_node(node: &SvoNode, child: u32) -> u32 {
-    node.first_child + (node.child_mask & ((1 << child) - 1)).count_ones()
-}
-
-/// The cell of a child, one level down.
-#[inline]
-pub fn child_cell(cell: [u32; 3], child: u32) -> [u32; 3] {
-    [cell[0] << 1 | child & 1, cell[1] << 1 | child >> 1 & 1, cell[2] << 1 | child >> 2]
-}
-
-fn enters<R: Real>(cell: [u32; 3], edge: u32, ray: &SlabRay<R>, counters: &mut Counters) -> bool {
-    counters[Counter::SvoNodes] += 1;
-    voxel::bounds::<R>(cell, edge).interval(ray).overlaps(ray.t_min, ray.t_max)
-}
-
-/// The next child that the ray enters, from `rank` on in the ray's order.
-fn next_child<R: Real>(
-    node: &SvoNode,
-    cell: [u32; 3],
-    child_edge: u32,
-    rank: u32,
-    octant: u32,
-    ray: &SlabRay<R>,
-    counters: &mut Counters,
-) -> Option<u32> {
-    (rank..8)
-        .map(|rank| rank ^ octant)
-        .filter(|child| node.child_mask & (1 << child) != 0)
-        .find(|child| enters(child_cell(cell, *child), child_edge, ray, counters))
-}
-
 #[cfg(test)]
 mod tests {
+    use luxel_flat::MAX_SVO_DEPTH;
+
     use super::*;
 
     #[test]

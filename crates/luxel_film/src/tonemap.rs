@@ -9,6 +9,7 @@
 //!   (2023): inset matrix, logarithm over 16.5 stops, polynomial sigmoid, outset. Deviation: the outset is the
 //!   exact inverse of the inset.
 use glam::{Mat3, Vec3};
+pub use luxel_geom::srgb::srgb_encode;
 
 use crate::accumulate::luminance;
 
@@ -87,11 +88,6 @@ fn agx(radiance: [f32; 3]) -> [f32; 3] {
     let shaped = Vec3::from((AGX_INSET * Vec3::from(radiance)).to_array().map(curve));
     let display = AGX_INSET.inverse() * shaped;
     display.to_array().map(|c| c.clamp(0.0, 1.0).powf(2.2))
-}
-
-/// The sRGB curve (IEC 61966-2-1) from linear light in [0, 1] to code values in [0, 1].
-pub fn srgb_encode(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// A code value in [0, 1] as the nearest byte; values outside are clipped, NaN is 0.

@@ -95,6 +95,11 @@ shared_const! {
     /// Deepest level of a voxel octree below its root: 2048³.
     pub const MAX_SVO_DEPTH: u32 = 11;
 
+    /// Where the material of a leaf begins in [`SvoNode::bits`](crate::SvoNode::bits).
+    pub const SVO_MATERIAL_SHIFT: u32 = 8;
+    /// Where the square root of the solid share, in 255ths, begins in [`FlatScene::svo_colors`](crate::FlatScene::svo_colors).
+    pub const SVO_SHARE_SHIFT: u32 = 24;
+
     /// [`Instance::kind`](crate::Instance): the one sphere cloud.
     pub const KIND_SPHERES: u32 = 0;
     /// [`Instance::kind`](crate::Instance): a triangle mesh.

@@ -107,17 +107,14 @@ shared_struct! {
 }
 
 shared_struct! {
-    /// A node of a sparse voxel octree. Children stand side by side in order of their bit in `child_mask`.
+    /// A node of a sparse voxel octree. Children stand side by side in order of their bit in the mask. What a node shows
+    /// from afar stands beside, in `FlatScene::svo_colors`.
     pub struct SvoNode {
         /// First child, relative to the volume; unused in a leaf.
         pub first_child: u32,
-        /// Bit i = child i exists (bit 0 = x, bit 1 = y, bit 2 = z upper half); 0 in a leaf.
-        pub child_mask: u32,
-        /// Average over the solid voxels below: sRGB red, green, blue, and the solid share of the cell, 8 bits
-        /// each from the lowest.
-        pub color: u32,
-        /// Material of a leaf, counted from the instance's `material_first`.
-        pub material: u32,
+        /// Lowest 8 bits: bit i = child i exists (bit 0 = x, bit 1 = y, bit 2 = z upper half), 0 in a leaf. From
+        /// `SVO_MATERIAL_SHIFT` on 8 bits: material of a leaf, counted from the instance's `material_first`. The rest is 0.
+        pub bits: u32,
     }
 }
 
@@ -316,6 +313,32 @@ impl BvhNode {
     #[inline]
     pub fn pack_leaf(first: u32, count: u32) -> u32 {
         count << crate::LEAF_COUNT_SHIFT | first
+    }
+}
+
+impl SvoNode {
+    /// A node with children.
+    #[inline]
+    pub fn inner(first_child: u32, child_mask: u32) -> Self {
+        Self { first_child, bits: child_mask }
+    }
+
+    /// A solid cell.
+    #[inline]
+    pub fn leaf(material: u8) -> Self {
+        Self { first_child: 0, bits: u32::from(material) << crate::SVO_MATERIAL_SHIFT }
+    }
+
+    /// Bit i = child i exists; 0 in a leaf.
+    #[inline]
+    pub fn child_mask(&self) -> u32 {
+        self.bits & 0xff
+    }
+
+    /// Material of a leaf, counted from the instance's `material_first`.
+    #[inline]
+    pub fn material(&self) -> u32 {
+        self.bits >> crate::SVO_MATERIAL_SHIFT & 0xff
     }
 }
 

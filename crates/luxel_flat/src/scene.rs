@@ -54,6 +54,9 @@ pub struct FlatScene {
     pub triangle_attributes: Heap<TriangleAttributes>,
     /// Nodes of the voxel octrees; the root of each is its first.
     pub svo_nodes: Heap<SvoNode>,
+    /// What each of those nodes shows, in the same order: the average over the solid voxels below, sRGB red, green, blue,
+    /// and from `SVO_SHARE_SHIFT` on the solid share of its cell, whose square root is stored, each in 8 bits.
+    pub svo_colors: Heap<u32>,
     /// Materials, by slot.
     pub materials: Heap<MaterialRecord>,
     /// Textures as materials use them.

@@ -86,11 +86,18 @@ impl<R: Real> Aabb<R> {
     pub fn interval(&self, ray: &SlabRay<R>) -> Interval<R> {
         let t0 = (self.lo - ray.origin) * ray.inv_direction;
         let t1 = (self.hi - ray.origin) * ray.inv_direction;
-        Interval { enter: t0.min(t1).max_element(), exit: t0.max(t1).min_element() * R::from_f32(FAR_PAD) }
+        Interval::between(t0.min(t1), t0.max(t1))
     }
 }
 
 impl<R: Real> Interval<R> {
+    /// The part of a line that lies between three pairs of planes, given the parameters at which it crosses the nearer and
+    /// the farther plane of each.
+    #[inline]
+    pub fn between(near: R::Vec3, far: R::Vec3) -> Self {
+        Self { enter: near.max_element(), exit: far.min_element() * R::from_f32(FAR_PAD) }
+    }
+
     /// True if a hit with `t_min < t <= t_max` can lie in this interval. The origin may be inside the box.
     #[inline]
     pub fn overlaps(&self, t_min: R, t_max: R) -> bool {

@@ -24,6 +24,7 @@ pub mod environment;
 pub mod equirect;
 pub mod frame;
 pub mod lanes;
+pub mod lod_error;
 pub mod microfacet;
 pub mod normal_guard;
 pub mod octahedral;

@@ -1,4 +1,4 @@
-//! The transfer function of sRGB (IEC 61966-2-1), from code values to linear light. Encoding is `luxel_film`'s.
+//! The transfer function of sRGB (IEC 61966-2-1), from code values to linear light and back.
 use crate::Real;
 
 /// Linear light in `[0, 1]` of a code value in `[0, 1]`.
@@ -14,4 +14,10 @@ pub fn srgb_decode<R: Real>(code: R) -> R {
 #[inline]
 pub fn srgb_decode_byte<R: Real>(byte: u8) -> R {
     srgb_decode(R::from_f64(f64::from(byte) / 255.0))
+}
+
+/// Code value of linear light; both 1 at 1.
+#[inline]
+pub fn srgb_encode(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }

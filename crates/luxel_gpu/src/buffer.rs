@@ -20,7 +20,7 @@ impl GpuBuffer {
     /// A zeroed buffer of at least `bytes` bytes.
     ///
     /// # Errors
-    /// [`GpuError::LimitExceeded`] beyond the device's binding or buffer size; [`GpuError::OutOfMemory`]; [`GpuError::Lost`].
+    /// [`GpuError::BufferTooLarge`] beyond the device's binding or buffer size; [`GpuError::OutOfMemory`]; [`GpuError::Lost`].
     pub fn new(gpu: &Gpu, label: &str, bytes: u64) -> Result<Self, GpuError> {
         let capacity = capacity_for(gpu, label, bytes)?;
         Ok(Self { label: label.to_owned(), raw: create(gpu, label, capacity)?, generation: 0 })
@@ -149,10 +149,9 @@ fn create(gpu: &Gpu, label: &str, bytes: u64) -> Result<wgpu::Buffer, GpuError> 
 }
 
 fn capacity_for(gpu: &Gpu, label: &str, bytes: u64) -> Result<u64, GpuError> {
-    let has = gpu.limits().max_array_bytes();
-    if bytes > has {
-        let what = format!("buffer '{label}' in bytes");
-        return Err(GpuError::LimitExceeded { what, needs: bytes, has });
+    let limit = gpu.limits().max_array_bytes();
+    if bytes > limit {
+        return Err(GpuError::BufferTooLarge { what: format!("buffer '{label}'"), bytes, limit });
     }
     Ok(bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT).max(MIN_BYTES))
 }

@@ -37,6 +37,16 @@ pub enum GpuError {
         /// Its size in bytes, 0 where it has none of its own.
         bytes: u64,
     },
+    /// A buffer would be larger than what the device can bind whole.
+    #[error("{what} takes {bytes} bytes, more than the {limit} bytes that a shader can read on this GPU")]
+    BufferTooLarge {
+        /// The buffer, by its label.
+        what: String,
+        /// Bytes asked for.
+        bytes: u64,
+        /// The device's limit in bytes.
+        limit: u64,
+    },
     /// The request is larger than the device allows.
     #[error("{what} needs {needs}, the GPU allows {has}")]
     LimitExceeded {

@@ -121,7 +121,7 @@ impl GpuScene {
             sphere_nodes: GpuHeap::new(gpu, "sphere_nodes")?,
             leaf_spheres: GpuHeap::new(gpu, "leaf_spheres")?,
             triangles: GpuHeap::new(gpu, "triangles")?,
-            svo_nodes: GpuHeap::new(gpu, "svo_nodes")?,
+            svo_nodes: GpuHeap::new(gpu, "svo_nodes (the voxel volumes)")?,
             materials: GpuHeap::new(gpu, "materials")?,
             triangle_attributes: GpuHeap::new(gpu, "triangle_attributes")?,
             textures: GpuHeap::new(gpu, "textures")?,

@@ -276,7 +276,7 @@ fn no_scene() -> GpuError {
 fn trace_error(error: GpuError) -> TraceError {
     match error {
         GpuError::Lost { .. } | GpuError::Timeout { .. } => TraceError::DeviceLost(error.to_string()),
-        GpuError::OutOfMemory { .. } | GpuError::LimitExceeded { .. } => {
+        GpuError::OutOfMemory { .. } | GpuError::BufferTooLarge { .. } | GpuError::LimitExceeded { .. } => {
             TraceError::OutOfMemory(error.to_string())
         }
         _ => TraceError::Failed(error.to_string()),

@@ -72,6 +72,7 @@ pub use mesh_structure::{
     MAX_MESH_BINS, MAX_MESH_LEAF_SIZE, MeshAccel, MeshLevels, MeshQuality, MeshSplit, MeshStructure,
 };
 pub use options::LoadOptions;
+pub use procedural::{AREA_EXTENT, Area, AreaKind, Cancelled, Progress, cache_folder, content_hash};
 pub use report::{LoadReport, SceneEntry};
 pub use resources::{Environment, LightSampling, RenderSettings, ToneMapping};
 pub use sphere_cloud::{MAX_CLOUD_DEPTH, MAX_LEAF_SPHERES, SphereAccel, SphereCloud};

@@ -2,6 +2,7 @@
 
 use bevy_ecs::prelude::Component;
 use glam::Vec3;
+use luxel_geom::srgb::srgb_encode;
 use serde::{Deserialize, Serialize};
 
 /// A surface and the light that it gives off.
@@ -160,6 +161,19 @@ impl Default for Surface {
 }
 
 impl Material {
+    /// The reflectance in 8-bit sRGB, of which averages of voxels are made; glass counts as white.
+    pub fn display_color(&self) -> [u8; 3] {
+        let reflectance = match self.surface {
+            Surface::Lambert { albedo }
+            | Surface::Metal { albedo, .. }
+            | Surface::SemiSpecular { albedo, .. } => albedo,
+            Surface::Principled(principled) => principled.base_color,
+            Surface::Unlit { color } => color,
+            Surface::Dielectric { .. } => Vec3::ONE,
+        };
+        reflectance.to_array().map(|linear| (srgb_encode(linear.clamp(0.0, 1.0)) * 255.0).round() as u8)
+    }
+
     /// A diffuse surface.
     pub fn lambert(albedo: Vec3) -> Self {
         Surface::Lambert { albedo }.into()
@@ -193,5 +207,19 @@ impl Material {
 impl From<Surface> for Material {
     fn from(surface: Surface) -> Self {
         Self { surface, emission: Vec3::ZERO, opacity: Opacity::Opaque }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn display_colors_are_srgb() {
+        let gray = |x: f32| Material::lambert(Vec3::splat(x)).display_color()[0];
+        assert_eq!(
+            [gray(0.0), gray(1.0), gray(0.215_861), gray(0.001), gray(-3.0), gray(f32::NAN)],
+            [0, 255, 128, 3, 0, 0]
+        );
     }
 }

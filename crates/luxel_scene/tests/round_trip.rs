@@ -180,6 +180,7 @@ fn insert_assets(folder: &Path, assets: &mut Assets) -> (Vec<AssetId>, Vec<Asset
         VolumeSource::Menger { level: 1 },
         VolumeSource::Lantern { size: 5 },
         VolumeSource::Island { size: 16, seed: 9 },
+        VolumeSource::Area { kind: AreaKind::Biomes, size: 64, seed: 2 },
     ]
     .map(|source| assets.insert_volume(VolumeAsset::from_source(source).unwrap()));
     let sky = folder.join("sky.hdr");

@@ -199,6 +199,8 @@ const FILE_MISTAKES: &[(&str, &str)] = &[
     ("volumes: {1: File(\"bad.ron\")}", "bad.ron: volume 1: bad.ron:"),
     ("volumes: {1: Menger(level: 6)}", "volume 1: level must be in 0 to 5"),
     ("volumes: {1: Island(size: 8, seed: 1)}", "volume 1: size must be in 16 to 512"),
+    ("volumes: {1: Area(kind: Desert, size: 32, seed: 1)}", "volume 1: size must be in 64 to 2048"),
+    ("volumes: {1: Area(kind: Desert, size: 100, seed: 1)}", "volume 1: size must be a power of two"),
     ("volumes: {1: File(\"none.vox\")}", "bad.ron: volume 1: none.vox: cannot be read"),
     ("meshes: {1: Quad}, volumes: {1: Menger(level: 1)}", "volume 1: id is a mesh's id too"),
     ("images: {0: Checker(squares: 2, a: (0, 0, 0), b: (1, 1, 1))}", "image 0: id must be in 1 to"),

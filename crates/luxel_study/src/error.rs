@@ -98,6 +98,9 @@ pub enum StudyError {
     /// A scene of a study cannot be traced.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// An octree of a study cannot be built.
+    #[error(transparent)]
+    Accel(#[from] luxel_accel::AccelError),
     /// A run cannot be put into JSON.
     #[error("a run cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),

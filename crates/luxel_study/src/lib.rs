@@ -27,6 +27,7 @@ pub mod octree;
 mod plane;
 mod read;
 mod ssim;
+pub mod voxel;
 
 pub use compare::{Comparison, compare};
 pub use error::StudyError;

@@ -104,10 +104,10 @@ fn solid_cells(scene: &FlatScene, instance: &Instance) -> Vec<[u32; 3]> {
     let mut open = vec![(0, [0u32; 3])];
     while let Some((index, cell)) = open.pop() {
         let node = scene.svo_nodes.as_slice()[(instance.node_first + index) as usize];
-        if node.child_mask == 0 {
+        if node.child_mask() == 0 {
             solid.push(cell);
         }
-        for (nth, child) in (0..8).filter(|child| node.child_mask >> child & 1 == 1).enumerate() {
+        for (nth, child) in (0..8).filter(|child| node.child_mask() >> child & 1 == 1).enumerate() {
             let half = |axis: usize| cell[axis] << 1 | child >> axis & 1;
             open.push((node.first_child + nth as u32, [half(0), half(1), half(2)]));
         }

@@ -3,10 +3,13 @@
 //! Theory: IEC 61966-2-1 (sRGB). A byte is brought to linear light with 24 fractional bits; 2048³ of them still
 //! fit 64 bits, and integer sums do not depend on their order.
 
+use luxel_flat::SVO_SHARE_SHIFT;
+
 /// Linear light 1.
 const LINEAR_ONE: f64 = (1 << 24) as f64;
 
 /// Linear light of each byte, and where bytes change when going back.
+#[derive(Clone, Debug)]
 pub(super) struct Srgb {
     linear: [u64; 256],
     /// `border[i]`: the least linear value that is rounded to a byte above `i`.
@@ -52,14 +55,33 @@ impl Sum {
         self.count += other.count;
     }
 
-    /// The packed average of a node `levels` above the leaves; the solid share is at least 1 of 255, so that
-    /// nothing solid is lost.
+    /// Takes back what was added before.
+    pub(super) fn subtract(&mut self, part: &Self) {
+        for (sum, linear) in self.linear.iter_mut().zip(part.linear) {
+            *sum -= linear;
+        }
+        self.count -= part.count;
+    }
+
+    /// True without voxels.
+    pub(super) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The packed average of a node `levels` above the leaves. Of the solid share the square root is stored, which tells
+    /// one voxel in 8³ from none; it is at least 1 of 255, so that nothing solid is lost.
     pub(super) fn color(&self, levels: u32, srgb: &Srgb) -> u32 {
         let channel = |i: usize| srgb.encode(self.linear[i] / self.count) << (8 * i);
-        let cells = 1u64 << (3 * levels);
-        let share = ((2 * 255 * self.count + cells) / (2 * cells)).max(1) as u32;
-        channel(0) | channel(1) | channel(2) | share << 24
+        let share = self.count as f64 / (1u64 << (3 * levels)) as f64;
+        let root = (255.0 * share.sqrt()).round().max(1.0) as u32;
+        channel(0) | channel(1) | channel(2) | root << SVO_SHARE_SHIFT
     }
+}
+
+/// The solid share of a cell, from its packed colour.
+pub fn solid_share(color: u32) -> f32 {
+    let root = (color >> SVO_SHARE_SHIFT) as f32 / 255.0;
+    root * root
 }
 
 /// The packed colour of a leaf: wholly solid.
@@ -94,8 +116,12 @@ mod tests {
     #[test]
     fn the_solid_share_is_rounded_but_never_zero() {
         assert_eq!(average(&[[9; 3]; 8], 1)[3], 255);
-        assert_eq!(average(&[[9; 3]; 4], 1)[3], 128);
-        assert_eq!(average(&[[9; 3]; 1], 1)[3], 32);
+        assert_eq!(average(&[[9; 3]; 2], 1)[3], 128);
         assert_eq!(average(&[[9; 3]; 1], 11)[3], 1);
+        for (count, levels) in [(1, 3), (1, 1), (3, 1), (4, 1), (7, 1), (100, 3), (511, 3)] {
+            let share = solid_share(u32::from_le_bytes(average(&vec![[9; 3]; count], levels)));
+            let exact = count as f32 / (1 << (3 * levels)) as f32;
+            assert!((share - exact).abs() < 4e-3 && (count > 1 || (share - exact).abs() < 1e-3), "{count}");
+        }
     }
 }

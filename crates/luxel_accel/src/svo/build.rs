@@ -1,100 +1,117 @@
-//! One pass over the sorted cells: a node is written when the pass leaves its cell.
-use luxel_flat::{MAX_SVO_DEPTH, SvoNode};
+//! The nodes of a volume, level by level from the leaves up.
+//!
+//! Sorted cells fall into subtrees, which are built side by side; the few levels above them follow. Sums are of integers,
+//! so that the result does not depend on how the work was shared out.
+use luxel_flat::SvoNode;
+use rayon::prelude::*;
 
 use super::SvoVoxel;
 use super::average::{Srgb, Sum, leaf_color};
 use super::morton::{Key, sorted_keys};
 
-/// The nodes of a volume, level by level.
-pub(super) fn nodes(voxels: &[SvoVoxel], levels: u32) -> Vec<SvoNode> {
-    let keys = sorted_keys(voxels);
-    let mut next = level_starts(&keys, levels);
-    let total = next[levels as usize] + keys.len();
-    let mut pass = Pass {
-        levels,
-        nodes: vec![SvoNode::default(); if keys.is_empty() { 0 } else { total }],
-        open: [Open::default(); MAX_SVO_DEPTH as usize + 1],
-        srgb: Srgb::new(),
-    };
-    for (position, key) in keys.iter().enumerate() {
-        let voxel = &voxels[key.index()];
-        let leaf = &mut next[levels as usize];
-        pass.nodes[*leaf] =
-            SvoNode { color: leaf_color(voxel.color), material: voxel.material, ..SvoNode::default() };
-        pass.join(levels, *leaf, key.code(), Sum::of_leaf(leaf_color(voxel.color), &pass.srgb));
-        *leaf += 1;
-        let following = keys.get(position + 1).map(|k| k.code());
-        for level in (0..levels).rev() {
-            let cell = key.code() >> (3 * (levels - level));
-            if following.is_some_and(|code| code >> (3 * (levels - level)) == cell) {
-                break;
-            }
-            pass.close(level, next[level as usize], cell);
-            next[level as usize] += 1;
-        }
-    }
-    pass.nodes
+/// Level of the roots of the subtrees: up to 4096 of them, so that their unequal sizes even out.
+const SPLIT: u32 = 4;
+
+/// Nodes, and what each shows, of one level in Morton order.
+#[derive(Default)]
+struct Level {
+    /// `first_child` counts within the level below.
+    nodes: Vec<SvoNode>,
+    colors: Vec<u32>,
 }
 
-/// Index of the first node of each level. The number of nodes in a level is the number of different prefixes.
-fn level_starts(keys: &[Key], levels: u32) -> [usize; MAX_SVO_DEPTH as usize + 1] {
-    let mut counts = [0; MAX_SVO_DEPTH as usize + 1];
-    if !keys.is_empty() {
-        counts.fill(1);
-    }
-    for pair in keys.windows(2) {
-        // The first level at which the two cells are different ones; so are all below.
-        let differing_bits = 64 - (pair[0].code() ^ pair[1].code()).leading_zeros();
-        let first = levels + 1 - differing_bits.div_ceil(3);
-        counts[first as usize..].iter_mut().for_each(|count| *count += 1);
-    }
-    let mut start = 0;
-    counts.map(|count| {
-        let first = start;
-        start += count;
-        first
-    })
-}
-
-/// What is known so far of the node that the pass is inside of, on one level.
-#[derive(Clone, Copy, Default)]
-struct Open {
-    first_child: usize,
-    child_mask: u32,
+/// A node that awaits its parent.
+struct Cell {
+    code: u64,
     sum: Sum,
 }
 
-/// The state of the pass.
-struct Pass {
-    levels: u32,
-    nodes: Vec<SvoNode>,
-    open: [Open; MAX_SVO_DEPTH as usize + 1],
-    srgb: Srgb,
+/// Nodes and colours of a volume.
+pub(super) fn nodes(voxels: &[SvoVoxel], levels: u32) -> (Vec<SvoNode>, Vec<u32>) {
+    let keys = sorted_keys(voxels);
+    if keys.is_empty() {
+        return Default::default();
+    }
+    let srgb = Srgb::new();
+    let split = levels.min(SPLIT);
+    let is_together = |a: &Key, b: &Key| (a.code() ^ b.code()) >> (3 * (levels - split)) == 0;
+    let parts: Vec<&[Key]> = keys.chunk_by(is_together).collect();
+    let subtree = |part: &&[Key]| subtree(part, voxels, levels - split, &srgb);
+    let (subtrees, roots): (Vec<Vec<Level>>, Vec<Cell>) = parts.par_iter().map(subtree).collect();
+    let mut top = Vec::new();
+    let mut cells = roots;
+    for height in levels - split + 1..=levels {
+        let (level, above) = level_above(&cells, height, &srgb);
+        top.push(level);
+        cells = above;
+    }
+    joined(top, subtrees)
 }
 
-impl Pass {
-    /// Adds a finished node to the open node above it, if there is one.
-    fn join(&mut self, level: u32, index: usize, cell: u64, sum: Sum) {
-        let Some(above) = level.checked_sub(1) else {
-            return;
-        };
-        let open = &mut self.open[above as usize];
-        if open.child_mask == 0 {
-            open.first_child = index;
-        }
-        open.child_mask |= 1 << (cell & 7);
-        open.sum.add(&sum);
+/// The levels below and at a subtree's root, the leaves first, and the root.
+fn subtree(keys: &[Key], voxels: &[SvoVoxel], heights: u32, srgb: &Srgb) -> (Vec<Level>, Cell) {
+    let voxel = |key: &Key| &voxels[key.index()];
+    let leaves = Level {
+        nodes: keys.iter().map(|key| SvoNode::leaf(voxel(key).material)).collect(),
+        colors: keys.iter().map(|key| leaf_color(voxel(key).color)).collect(),
+    };
+    let sums = leaves.colors.iter().map(|color| Sum::of_leaf(*color, srgb));
+    let mut cells: Vec<Cell> =
+        keys.iter().zip(sums).map(|(key, sum)| Cell { code: key.code(), sum }).collect();
+    let mut levels = vec![leaves];
+    for height in 1..=heights {
+        let (level, above) = level_above(&cells, height, srgb);
+        levels.push(level);
+        cells = above;
     }
+    let root = cells.swap_remove(0);
+    (levels, root)
+}
 
-    /// Writes the open node of a level.
-    fn close(&mut self, level: u32, index: usize, cell: u64) {
-        let open = std::mem::take(&mut self.open[level as usize]);
-        self.nodes[index] = SvoNode {
-            first_child: open.first_child as u32,
-            child_mask: open.child_mask,
-            color: open.sum.color(self.levels - level, &self.srgb),
-            material: 0,
-        };
-        self.join(level, index, cell, open.sum);
+/// The parents of some nodes, `height` levels above the leaves.
+fn level_above(children: &[Cell], height: u32, srgb: &Srgb) -> (Level, Vec<Cell>) {
+    let (mut level, mut cells) = (Level::default(), Vec::new());
+    let mut first = 0;
+    for siblings in children.chunk_by(|a, b| a.code >> 3 == b.code >> 3) {
+        let mut sum = Sum::default();
+        let mask = siblings.iter().fold(0, |mask, child| {
+            sum.add(&child.sum);
+            mask | 1 << (child.code & 7)
+        });
+        level.nodes.push(SvoNode::inner(first, mask));
+        level.colors.push(sum.color(height, srgb));
+        cells.push(Cell { code: siblings[0].code >> 3, sum });
+        first += siblings.len() as u32;
     }
+    (level, cells)
+}
+
+/// All levels in one array, the root first. `top` are the levels above the subtrees from the lowest up.
+fn joined(top: Vec<Level>, subtrees: Vec<Vec<Level>>) -> (Vec<SvoNode>, Vec<u32>) {
+    let heights = subtrees.first().map_or(0, Vec::len);
+    let counts = subtrees.iter().flatten().chain(&top).map(|level| level.nodes.len()).sum();
+    let (mut nodes, mut colors) = (Vec::with_capacity(counts), Vec::with_capacity(counts));
+    let mut append = |level: &Level, below: usize| {
+        let placed = |node: &SvoNode| match node.child_mask() {
+            0 => *node,
+            mask => SvoNode::inner(node.first_child + below as u32, mask),
+        };
+        nodes.extend(level.nodes.iter().map(placed));
+        colors.extend_from_slice(&level.colors);
+    };
+    let mut start = 0;
+    for level in top.iter().rev() {
+        start += level.nodes.len();
+        append(level, start);
+    }
+    for height in (0..heights).rev() {
+        let count = |height: usize| subtrees.iter().map(|levels| levels[height].nodes.len()).sum::<usize>();
+        start += count(height);
+        let mut below = start;
+        for levels in &subtrees {
+            append(&levels[height], below);
+            below += height.checked_sub(1).map_or(0, |lower| levels[lower].nodes.len());
+        }
+    }
+    (nodes, colors)
 }

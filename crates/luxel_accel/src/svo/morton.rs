@@ -27,10 +27,16 @@ impl Key {
 
 /// Bits of x, y, z interleaved; x lowest.
 pub(super) fn encode(cell: [u16; 3]) -> u64 {
-    (0..16).fold(0, |code, bit| {
-        let triple = (0..3).fold(0, |t, axis| t | u64::from(cell[axis] >> bit & 1) << axis);
-        code | triple << (3 * bit)
-    })
+    spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2
+}
+
+/// A number's bits, two zeros between each and the next.
+fn spread(number: u16) -> u64 {
+    let x = u64::from(number);
+    let x = (x | x << 16) & 0x0000_ff00_00ff;
+    let x = (x | x << 8) & 0x00f0_0f00_f00f;
+    let x = (x | x << 4) & 0x0c30_c30c_30c3;
+    (x | x << 2) & 0x2492_4924_9249
 }
 
 /// One key per solid cell in Morton order; of several voxels in a cell, the last.
@@ -58,6 +64,8 @@ mod tests {
         assert_eq!(encode([0, 1, 0]), 2);
         assert_eq!(encode([0, 0, 1]), 4);
         assert_eq!(encode([2047; 3]), (1 << 33) - 1);
+        assert_eq!(encode([u16::MAX; 3]), (1 << 48) - 1);
+        (0..16).for_each(|bit| assert_eq!(encode([0, 0, 1 << bit]), 4 << (3 * bit)));
         assert_eq!(encode([0b10, 0b11, 0]), 0b011_010);
     }
 

@@ -183,10 +183,11 @@ fn describe(scene: &FlatScene, i: &Instance) -> String {
         }
         KIND_VOXELS => {
             let nodes = &scene.svo_nodes.as_slice()[nodes];
-            let leaves = nodes.iter().filter(|node| node.child_mask == 0);
+            let leaves = nodes.iter().filter(|node| node.child_mask() == 0);
             let materials: Vec<String> =
-                leaves.map(|n| material(scene, i.material_first + n.material)).collect();
-            format!("{place} {nodes:?} {materials:?}")
+                leaves.map(|n| material(scene, i.material_first + n.material())).collect();
+            let colors = &scene.svo_colors.as_slice()[range(i.node_first, i.node_count)];
+            format!("{place} {nodes:?} {colors:?} {materials:?}")
         }
         // The cloud's octree may have another shape; its spheres are listed one by one.
         _ => place,

@@ -79,6 +79,7 @@ impl SceneBuilder {
             ..Instance::default()
         };
         self.flat.svo_nodes.write(self.flat.svo_nodes.len(), &svo.nodes, 1);
+        self.flat.svo_colors.write(self.flat.svo_colors.len(), &svo.colors, 1);
         self.place(instance, world_from_object, &svo.bounds)
     }
 

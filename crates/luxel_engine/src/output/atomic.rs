@@ -1,6 +1,6 @@
 //! Writing beside a file's place and moving it there.
 use std::fs::{self, File};
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf, is_separator};
 
 use tempfile::{Builder, NamedTempFile};
@@ -13,6 +13,16 @@ use super::OutputError;
 /// As the writers: something else is in its place, the folder is missing or refuses a new file.
 pub fn check(path: &Path) -> Result<(), OutputError> {
     beside(path).map(drop)
+}
+
+/// Writes a file of some bytes, all of them or none.
+///
+/// # Errors
+/// As [`check`], and when the disk refuses.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    write_atomically(path, |file| {
+        file.write_all(bytes).map_err(|source| OutputError::Io { path: path.to_owned(), source })
+    })
 }
 
 /// Lets `write` fill a file beside `path`, then moves it there; a link is followed, a file replaced.
@@ -75,8 +85,6 @@ fn new_file(folder: &Path) -> std::io::Result<NamedTempFile> {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Write;
-
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-pub use atomic::check;
+pub use atomic::{check, write_file};
 pub use exr_file::{Precision, write_exr};
 pub use metadata::Metadata;
 pub use picture::Picture;

@@ -75,7 +75,7 @@ fn sizes_are_checked_against_the_tier() {
     let error = GpuBuffer::new(&gpu, "nodes", limit + 1).unwrap_err();
     assert_eq!(
         error,
-        GpuError::LimitExceeded { what: "buffer 'nodes' in bytes".to_owned(), needs: limit + 1, has: limit }
+        GpuError::BufferTooLarge { what: "buffer 'nodes'".to_owned(), bytes: limit + 1, limit }
     );
     let mut buffer = GpuBuffer::new(&gpu, "nodes", 100 << 20).unwrap();
     buffer.reserve(&gpu, 101 << 20).unwrap();

@@ -6,6 +6,7 @@ use glam::UVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::material::Material;
+use crate::procedural::AreaKind;
 
 /// A volume and how to get it again.
 #[derive(Clone, PartialEq, Debug)]
@@ -39,6 +40,16 @@ pub enum VolumeSource {
     Lantern {
         /// Voxels along the base, 5..=256; twice as many upwards.
         size: u32,
+    },
+    /// A landscape of 512 m × 512 m, as in seed document 3; see [`Area`](crate::Area). From 512 voxels on it is kept in the cache
+    /// folder.
+    Area {
+        /// Which landscape.
+        kind: AreaKind,
+        /// Voxels along an edge: a power of two from 64 to 2048.
+        size: u32,
+        /// Picks the landscape.
+        seed: u32,
     },
 }
 

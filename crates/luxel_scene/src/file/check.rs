@@ -238,6 +238,10 @@ pub(crate) fn check_volume_source(source: &VolumeSource) -> Checked {
         VolumeSource::Island { size, .. } => between("size", size, 16..=512),
         VolumeSource::Menger { level } => between("level", level, 0..=5),
         VolumeSource::Lantern { size } => between("size", size, 5..=256),
+        VolumeSource::Area { size, .. } => {
+            between("size", size, 64..=2048)?;
+            require(size.is_power_of_two(), "size", "a power of two", size)
+        }
     }
 }
 

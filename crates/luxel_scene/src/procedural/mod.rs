@@ -1,5 +1,6 @@
 //! Meshes and volumes by recipe: the example scenes need no files.
 
+mod area;
 mod canvas;
 mod island;
 mod lantern;
@@ -9,8 +10,11 @@ mod rabbit;
 mod scatter;
 mod terrain;
 
+use std::ops::ControlFlow;
+
 use crate::assets::{MeshSource, TriangleMesh, VolumeSource, VoxelGrid};
 
+pub use area::{AREA_EXTENT, Area, AreaKind, Cancelled, Progress, cache_folder, content_hash};
 pub(crate) use meshes::quad;
 pub(crate) use scatter::Scatter;
 
@@ -36,5 +40,19 @@ pub(crate) fn volume(source: &VolumeSource) -> Option<VoxelGrid> {
         VolumeSource::Island { size, seed } => island::island(size, seed),
         VolumeSource::Menger { level } => lantern::menger(level),
         VolumeSource::Lantern { size } => lantern::lantern(size),
+        VolumeSource::Area { kind, size, seed } => kept_area(&Area { kind, size, seed }),
     })
+}
+
+/// Areas from this size on are kept on disk.
+const KEPT_FROM: u32 = 512;
+
+fn kept_area(area: &Area) -> VoxelGrid {
+    let mut go_on = |_, _| ControlFlow::Continue(());
+    let grid = match cache_folder().filter(|_| area.size >= KEPT_FROM) {
+        Some(folder) => area.cached(&folder, &mut go_on),
+        None => area.generate(&mut go_on),
+    };
+    // Nobody breaks off here.
+    grid.unwrap_or_default()
 }

@@ -9,6 +9,7 @@ pub(crate) mod chart;
 pub(crate) mod doors;
 pub(crate) mod draw;
 pub(crate) mod figure;
+pub(crate) mod filed;
 pub(crate) mod list;
 mod measure;
 pub(crate) mod measured;
@@ -19,7 +20,7 @@ pub(crate) mod plan;
 pub(crate) mod record;
 pub(crate) mod select;
 pub(crate) mod stats;
-mod store;
+pub(crate) mod store;
 pub(crate) mod study;
 #[cfg(test)]
 pub(crate) mod tests;

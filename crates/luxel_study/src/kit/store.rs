@@ -12,9 +12,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::list::read_runs;
-use super::record::{Record, Shared};
-use super::study::Study;
+use super::filed::Filed;
 use crate::StudyError;
 
 /// Records, a JSON object per line.
@@ -28,17 +26,17 @@ const TABLE_BEGIN: &str = "study,format,sweep,";
 const BEGIN_BYTES: u64 = 4000;
 
 /// A folder that a study is being written to. It goes again in the end if it was made for the study and nothing is in it.
-pub(super) struct Folder<S: Study> {
+pub(crate) struct Folder<S: Filed> {
     path: PathBuf,
     /// What of its path was missing, the innermost first.
     made: Vec<PathBuf>,
     study: PhantomData<S>,
 }
 
-impl<S: Study> Folder<S> {
+impl<S: Filed> Folder<S> {
     /// Makes the folder if it is missing, and finds out whether files can be made in it and whether those that are
     /// there may be replaced.
-    pub(super) fn open(path: &Path) -> Result<Self, StudyError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, StudyError> {
         let missing = path.ancestors().filter(|place| !place.as_os_str().is_empty() && !place.exists());
         let made = missing.map(Path::to_owned).collect();
         let folder = Self { path: path.to_owned(), made, study: PhantomData };
@@ -52,9 +50,9 @@ impl<S: Study> Folder<S> {
                 return Err(folder.error(name, io::Error::from(io::ErrorKind::IsADirectory)));
             }
         }
-        let is_of_study = read_runs::<S::Run>(&path.join(RUNS)).is_ok();
+        let is_of_study = S::read(&path.join(RUNS)).is_ok();
         let title = format!("<title>{}</title>", S::TITLE);
-        let row = format!("\n{},", S::Run::STUDY);
+        let row = format!("\n{},", S::STUDY);
         for (name, marks) in [(TABLE, [TABLE_BEGIN, row.as_str()]), (S::PAGE, [title.as_str(), ""])] {
             let file = path.join(name);
             if !is_of_study && file.exists() && !begins_with(&file, &marks) {
@@ -66,10 +64,10 @@ impl<S: Study> Folder<S> {
 
     /// Begins a list of runs. Records that are there already must be those of the same study: nobody else's file of
     /// that name is touched.
-    pub(super) fn begin_runs(&self) -> Result<RunsFile<'_, S>, StudyError> {
+    pub(crate) fn begin_runs(&self) -> Result<RunsFile<'_, S>, StudyError> {
         let there = self.path.join(RUNS);
         if there.exists() {
-            read_runs::<S::Run>(&there)?;
+            S::read(&there)?;
         }
         let mut file = self.lock_part()?;
         if file.metadata().map_err(|source| self.error(PART, source))?.len() > 0 {
@@ -77,6 +75,21 @@ impl<S: Study> Folder<S> {
             file = self.lock_part()?;
         }
         Ok(RunsFile { folder: self, file })
+    }
+
+    /// Goes on with what a study that was cut short left, if `is_same` holds for all of it; else begins anew as
+    /// [`Folder::begin_runs`] does.
+    pub(crate) fn resume_runs(
+        &self,
+        is_same: impl Fn(&S::Line) -> bool,
+    ) -> Result<(RunsFile<'_, S>, Vec<S::Line>), StudyError> {
+        let file = self.lock_part()?;
+        let left = S::read(&self.path.join(PART)).unwrap_or_default();
+        if left.is_empty() || !left.iter().all(is_same) {
+            drop(file);
+            return Ok((self.begin_runs()?, Vec::new()));
+        }
+        Ok((RunsFile { folder: self, file }, left))
     }
 
     /// Opens the growing list for this study alone.
@@ -91,15 +104,15 @@ impl<S: Study> Folder<S> {
     }
 
     /// Writes page and table, both or none.
-    pub(super) fn write(&self, runs: &[S::Run], page: &str) -> Result<[PathBuf; 2], StudyError> {
+    pub(crate) fn write(&self, runs: &[S::Line], page: &str) -> Result<[PathBuf; 2], StudyError> {
         let (page, table) = (self.beside(S::PAGE, page.as_bytes())?, self.beside(TABLE, &self.table(runs)?)?);
         Ok([self.place(page, S::PAGE)?, self.place(table, TABLE)?])
     }
 
-    fn table(&self, runs: &[S::Run]) -> Result<Vec<u8>, StudyError> {
+    fn table(&self, runs: &[S::Line]) -> Result<Vec<u8>, StudyError> {
         let mut table = csv::Writer::from_writer(Vec::new());
         for run in runs {
-            table.serialize(run.for_table())?;
+            table.serialize(S::for_table(run))?;
         }
         table.into_inner().map_err(|error| self.error(TABLE, error.into_error()))
     }
@@ -139,7 +152,7 @@ impl<S: Study> Folder<S> {
     }
 }
 
-impl<S: Study> Drop for Folder<S> {
+impl<S: Filed> Drop for Folder<S> {
     fn drop(&mut self) {
         for made in &self.made {
             // A folder that holds something stays.
@@ -175,26 +188,26 @@ fn begins_with(path: &Path, marks: &[&str]) -> bool {
 }
 
 /// The list of runs as it grows.
-pub(super) struct RunsFile<'a, S: Study> {
+pub(crate) struct RunsFile<'a, S: Filed> {
     folder: &'a Folder<S>,
     file: File,
 }
 
-impl<S: Study> RunsFile<'_, S> {
+impl<S: Filed> RunsFile<'_, S> {
     /// Appends a run, all of it or nothing.
-    pub(super) fn append(&mut self, run: &S::Run) -> Result<(), StudyError> {
+    pub(crate) fn append(&mut self, run: &S::Line) -> Result<(), StudyError> {
         let line = serde_json::to_string(run)? + "\n";
         append_whole(&mut self.file, line.as_bytes()).map_err(|source| self.folder.error(PART, source))
     }
 
     /// Removes it: nothing was measured.
-    pub(super) fn discard(self) -> Result<(), StudyError> {
+    pub(crate) fn discard(self) -> Result<(), StudyError> {
         let Self { folder, file: _open } = self;
         fs::remove_file(folder.path.join(PART)).map_err(|source| folder.error(PART, source))
     }
 
     /// Writes page and table, and gives all three their names.
-    pub(super) fn finish(self, runs: &[S::Run], page: &str) -> Result<[PathBuf; 3], StudyError> {
+    pub(crate) fn finish(self, runs: &[S::Line], page: &str) -> Result<[PathBuf; 3], StudyError> {
         let Self { folder, file } = self;
         file.sync_all().map_err(|source| folder.error(PART, source))?;
         let [page, table] = folder.write(runs, page)?;
