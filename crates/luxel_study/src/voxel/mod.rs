@@ -1,7 +1,7 @@
 //! The voxel study: error-aware adaptive ray tracing of voxel octrees, seed document 3 made again.
 //!
-//! Its four areas are landscapes of our own. A list of pictures is asked for ([`ask`]), each by a renderer under settings that
-//! are given or searched for ([`search`]), and measured against a reference of 4×4 rays a pixel ([`bench`]). What is
+//! Its four areas are landscapes of our own. A list of pictures is asked for (`ask`), each by a renderer under settings that
+//! are given or searched for (`search`), and measured against a reference of 4×4 rays a pixel (`bench`). What is
 //! searched for in one picture may be used in another, so that the desert comes first. A study that was cut short goes
 //! on where it was.
 mod ask;
