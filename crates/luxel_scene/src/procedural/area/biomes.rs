@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::Landscape;
 use super::field::{Field, distance, mix, step};
-use super::ground::{Cover, Shell, Spot};
+use super::ground::{Cover, Spot};
 use super::rocks::Rock;
 use super::stuff::Stuff;
 use super::things::{Offer, Thing, scatter};
@@ -14,7 +14,7 @@ use super::trees::{Crown, Tree};
 #[derive(Debug)]
 pub(super) struct BiomesRecipe {
     contrast: f32,
-    shell: Shell,
+    thickness: f32,
     base: f32,
     /// Middle and radius of the mountain, and its height.
     mountain: ([f32; 2], f32),
@@ -34,7 +34,7 @@ pub(super) struct BiomesRecipe {
 
 pub(super) const BIOMES: BiomesRecipe = BiomesRecipe {
     contrast: 1.0,
-    shell: Shell { skin: 1, crumbs: 5, density: 0.28 },
+    thickness: 0.62,
     base: 70.0,
     mountain: ([372.0, 130.0], 150.0),
     mountain_height: 120.0,
@@ -221,8 +221,8 @@ impl Landscape for Biomes {
         things
     }
 
-    fn shell(&self) -> Shell {
-        BIOMES.shell
+    fn thickness(&self) -> f32 {
+        BIOMES.thickness
     }
 
     fn contrast(&self) -> f32 {

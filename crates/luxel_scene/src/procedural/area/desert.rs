@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::Landscape;
 use super::buildings::{Building, RingWall, Roof};
 use super::field::{Field, distance, mix, random, step};
-use super::ground::{Cover, Shell, Spot};
+use super::ground::{Cover, Spot};
 use super::rocks::{Arch, Rock};
 use super::ropes::Beam;
 use super::stuff::Stuff;
@@ -17,7 +17,7 @@ use super::trees::{Crown, Tree};
 #[derive(Debug)]
 pub(super) struct DesertRecipe {
     contrast: f32,
-    shell: Shell,
+    thickness: f32,
     base: f32,
     /// Middle and radius of the town.
     town: ([f32; 2], f32),
@@ -38,7 +38,7 @@ pub(super) struct DesertRecipe {
 
 pub(super) const DESERT: DesertRecipe = DesertRecipe {
     contrast: 1.2,
-    shell: Shell { skin: 1, crumbs: 9, density: 0.29 },
+    thickness: 0.975,
     base: 78.0,
     town: ([205.0, 372.0], 84.0),
     town_depth: 15.0,
@@ -359,8 +359,8 @@ impl Landscape for Desert {
         things
     }
 
-    fn shell(&self) -> Shell {
-        DESERT.shell
+    fn thickness(&self) -> f32 {
+        DESERT.thickness
     }
 
     fn contrast(&self) -> f32 {

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::Landscape;
 use super::field::{Field, distance, mix, step};
-use super::ground::{Cover, Shell, Spot};
+use super::ground::{Cover, Spot};
 use super::rocks::Rock;
 use super::ropes::Beam;
 use super::stuff::Stuff;
@@ -16,7 +16,7 @@ use super::trees::{Crown, Tree};
 #[derive(Debug)]
 pub(super) struct ForestRecipe {
     contrast: f32,
-    shell: Shell,
+    thickness: f32,
     base: f32,
     mountain_height: f32,
     /// Where the mountains begin and end, from the valley's middle.
@@ -40,7 +40,7 @@ pub(super) struct ForestRecipe {
 
 pub(super) const FOREST: ForestRecipe = ForestRecipe {
     contrast: 1.0,
-    shell: Shell { skin: 1, crumbs: 9, density: 0.3 },
+    thickness: 1.14,
     base: 38.0,
     mountain_height: 185.0,
     flanks: [62.0, 225.0],
@@ -238,8 +238,8 @@ impl Landscape for Forest {
         things
     }
 
-    fn shell(&self) -> Shell {
-        FOREST.shell
+    fn thickness(&self) -> f32 {
+        FOREST.thickness
     }
 
     fn contrast(&self) -> f32 {

@@ -7,17 +7,6 @@ use super::field::{hash, mix};
 use super::stuff::Stuff;
 use super::tile::{TILE, Tile};
 
-/// How thick the shell of the ground is, in voxels.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shell {
-    /// Solid voxels, the one on top included.
-    pub(super) skin: i32,
-    /// Loose voxels below: how deep they reach.
-    pub(super) crumbs: i32,
-    /// How many of them there are, of 1.
-    pub(super) density: f32,
-}
-
 /// A column of ground, as a landscape is asked about it. Lengths are metres.
 pub(super) struct Spot {
     pub(super) x: f32,
@@ -101,26 +90,24 @@ impl Ground {
 
     /// Draws the columns of a tile.
     pub(super) fn draw(&self, landscape: &dyn Landscape, tile: &mut Tile, [x0, z0]: [i32; 2], salt: u32) {
-        let shell = landscape.shell();
+        let thickness = landscape.thickness();
         for (x, z) in (0..TILE).flat_map(|z| (0..TILE).map(move |x| (x0 + x, z0 + z))) {
             let spot = self.spot(x, z, salt);
             let cover = landscape.cover(&spot);
             let top = self.top(x, z);
             // Down to the lowest column beside it, so that steps have no holes.
             let beside = [self.top(x - 1, z), self.top(x + 1, z), self.top(x, z - 1), self.top(x, z + 1)];
-            let bottom = beside.into_iter().fold(top, i32::min).min(top - 1) + 2 - shell.skin;
+            let lowest = beside.into_iter().fold(top, |lowest, beside| lowest.min(beside + 1));
+            let bottom = lowest.min(((spot.height - thickness) / self.voxel) as i32 + 1);
             let steep = (spot.slope - 0.8).clamp(0.0, 1.0);
-            for y in bottom - shell.crumbs..=top {
-                if y >= bottom || hash([x, y, z], salt ^ 0xC4B5) < shell.density {
-                    // On a steep side the texture runs in layers and lumps, not down the column.
-                    let layer = y.div_euclid(3);
-                    let shift = (64.0 * hash([1, layer, 1], salt)) as i32;
-                    let lump = hash([(x + shift) / 5, layer, (z + shift) / 4], salt)
-                        + 0.6 * hash([x, y, z], salt)
-                        - 0.8;
-                    let tone = mix(cover.tone, 0.4 * cover.tone + lump, steep);
-                    tile.put([x, y, z], cover.stuff.shade(tone));
-                }
+            for y in bottom..=top {
+                // On a steep side the texture runs in layers and lumps, not down the column.
+                let layer = y.div_euclid(3);
+                let shift = (64.0 * hash([1, layer, 1], salt)) as i32;
+                let lump =
+                    hash([(x + shift) / 5, layer, (z + shift) / 4], salt) + 0.6 * hash([x, y, z], salt) - 0.8;
+                let tone = mix(cover.tone, 0.4 * cover.tone + lump, steep);
+                tile.put([x, y, z], cover.stuff.shade(tone));
             }
             if let Some((stuff, height)) = cover.tuft {
                 for y in 1..=((height / self.voxel) as i32) {

@@ -5,7 +5,7 @@
 //! the result is the same on every machine and with any number of threads.
 //!
 //! To tune an area, change the numbers of its recipe (`DESERT` in `desert.rs`, and so on): `contrast` widens or narrows
-//! the shades of everything without moving a voxel, `shell` sets how many voxels the ground takes.
+//! the shades of everything without moving a voxel, `thickness` sets how many voxels the ground takes.
 
 mod biomes;
 mod buildings;
@@ -35,7 +35,7 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 use crate::assets::VoxelGrid;
 use crate::material::Surface;
 
-use ground::{Cover, Ground, Shell, Spot};
+use ground::{Cover, Ground, Spot};
 use keys::{Key, key, voxel};
 use stuff::palette;
 use things::Thing;
@@ -46,7 +46,7 @@ pub const AREA_EXTENT: f32 = EXTENT;
 const EXTENT: f32 = 512.0;
 
 /// Changes whenever areas come out differently for another reason than the numbers of their recipes.
-const GENERATOR: u32 = 1;
+const GENERATOR: u32 = 2;
 
 /// Tiles that are drawn between two words to the caller.
 const BATCH: usize = 16;
@@ -214,8 +214,8 @@ trait Landscape: Sync {
     fn cover(&self, spot: &Spot) -> Cover;
     /// What stands on the ground.
     fn things(&self) -> Vec<Thing>;
-    /// How thick the ground is.
-    fn shell(&self) -> Shell;
+    /// How thick the ground is, metres; where it is steep, as thick as it must be to have no holes.
+    fn thickness(&self) -> f32;
     /// How different shades are.
     fn contrast(&self) -> f32;
 }
@@ -250,8 +250,7 @@ impl<'a> Plan<'a> {
         let things = self.things_of(at);
         let cells = |metres: f32| (metres / self.voxel) as i32;
         let [low, high] = self.ground.range(at);
-        let shell = self.landscape.shell();
-        let margin = shell.skin + shell.crumbs + 2;
+        let margin = cells(self.landscape.thickness()) + 2;
         let low = things.iter().fold(low, |low, thing| low.min(cells(thing.bounds()[0].y))) - margin;
         let high = things.iter().fold(high, |high, thing| high.max(cells(thing.bounds()[1].y)));
         let (low, high) = (low.max(0), (high + cells(2.0) + 2).min(self.size));

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::Landscape;
 use super::field::{Field, distance, mix, step};
-use super::ground::{Cover, Shell, Spot};
+use super::ground::{Cover, Spot};
 use super::rocks::Rock;
 use super::stuff::Stuff;
 use super::things::{Offer, Thing, scatter};
@@ -14,7 +14,7 @@ use super::trees::{Crown, Tree};
 #[derive(Debug)]
 pub(super) struct MountainRecipe {
     contrast: f32,
-    shell: Shell,
+    thickness: f32,
     /// Height of the lower left corner, and how much higher the upper right one is.
     rise: [f32; 2],
     /// Height of ridges.
@@ -35,7 +35,7 @@ pub(super) struct MountainRecipe {
 
 pub(super) const MOUNTAIN: MountainRecipe = MountainRecipe {
     contrast: 1.0,
-    shell: Shell { skin: 1, crumbs: 10, density: 0.36 },
+    thickness: 1.35,
     rise: [26.0, 225.0],
     ridges: 92.0,
     grains: [1.7, 0.6],
@@ -163,8 +163,8 @@ impl Landscape for Mountain {
         things
     }
 
-    fn shell(&self) -> Shell {
-        MOUNTAIN.shell
+    fn thickness(&self) -> f32 {
+        MOUNTAIN.thickness
     }
 
     fn contrast(&self) -> f32 {
