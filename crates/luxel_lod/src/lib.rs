@@ -9,7 +9,7 @@
 //! | [`plain`] | one, at the level whose nodes are as large as a pixel |
 //! | [`adaptive`] | one; where the picture varies, 2×2 or 4×4 more, at the leaves (document 3, §5.1.2) |
 //! | [`error_aware`] | one; where showing a node hides too much, 2×2 one level down, each again 2×2 (§5.1.3) |
-//! | [`reference`] | 4×4 at the leaves (§5.1.1) |
+//! | [`reference()`] | 4×4 at the leaves (§5.1.1) |
 //!
 //! Invariants: a renderer is a pure function of octree, view and settings, whatever the number of threads; an
 //! error-aware picture of threshold infinity is the plain one, and of a negative threshold the reference, bit for bit.
