@@ -1,3 +1,4 @@
+//! The studies of voxels, small, cut short and gone on with.
 use std::ops::ControlFlow;
 
 use super::*;
