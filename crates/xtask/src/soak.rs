@@ -24,7 +24,7 @@ struct Report {
 }
 
 /// Test targets with cases that are larger in the soak run: package, and target.
-const TARGETS: [(&str, &str); 7] = [
+const TARGETS: [(&str, &str); 8] = [
     ("luxel", "hard_cases"),
     ("luxel", "edit_loop"),
     ("luxel", "lights"),
@@ -32,6 +32,7 @@ const TARGETS: [(&str, &str); 7] = [
     ("luxel", "reference_renders"),
     ("luxel_cpu", "bsdf"),
     ("luxel_geom", "sampling"),
+    ("luxel_scene", "areas"),
 ];
 
 /// Runs the cases, with `arguments` for the test targets (names to run, say), one test after the other.
