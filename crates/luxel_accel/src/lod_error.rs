@@ -22,6 +22,7 @@ mod sh9;
 use glam::DVec3;
 
 pub use directions::DirectionTable;
+pub use raycast::multi_jittered;
 pub use sh9::Sh9;
 
 /// The error of every set of children; bit i of a set stands for child i (x lowest, then y, then z).

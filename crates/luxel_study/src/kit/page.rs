@@ -10,7 +10,8 @@ use super::text::{count, list, percent, short};
 use super::verdict::{Answer, MAJOR};
 use crate::StudyError;
 
-const STYLE: &str = include_str!("page.css");
+/// The style of every page.
+pub(crate) const STYLE: &str = include_str!("page.css");
 
 /// What stands on a page.
 pub(crate) struct Page<'a> {
@@ -215,7 +216,8 @@ fn claim(figure: &Figure) -> &str {
     figure.claim.as_deref().unwrap_or("The report claims nothing with this figure.")
 }
 
-fn badge(answer: Answer) -> Markup {
+/// An answer, in its colour.
+pub(crate) fn badge(answer: Answer) -> Markup {
     let class = match answer {
         Answer::Holds => "holds",
         Answer::Partly => "partly",
@@ -241,7 +243,11 @@ fn section(figure: &Figure) -> Result<Markup, StudyError> {
     })
 }
 
-fn part(part: &Part) -> Result<Markup, StudyError> {
+/// A part of a figure.
+///
+/// # Errors
+/// [`StudyError::Page`] if a chart cannot be drawn.
+pub(crate) fn part(part: &Part) -> Result<Markup, StudyError> {
     Ok(match part {
         Part::Chart(drawing) if drawing.is_empty() => html! {},
         Part::Chart(drawing) => chart(drawing)?,
@@ -259,7 +265,8 @@ fn part(part: &Part) -> Result<Markup, StudyError> {
     })
 }
 
-fn table(table: &Table) -> Markup {
+/// Rows under their head.
+pub(crate) fn table(table: &Table) -> Markup {
     html! {
         div class="wide" {
             table {

@@ -2,6 +2,7 @@
 use luxel_scene::AreaKind;
 
 use super::land::Lighting;
+use super::viewpoint::Viewpoint;
 
 /// The decay factors and thresholds of table 5.1.
 pub(super) const DECAYS: [f32; 6] = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3];
@@ -12,6 +13,7 @@ pub(super) const THRESHOLDS: [f32; 6] = [0.175, 0.15, 0.125, 0.1, 0.075, 0.05];
 pub(super) struct Ask {
     pub(super) sweep: Sweep,
     pub(super) area: AreaKind,
+    pub(super) viewpoint: Viewpoint,
     pub(super) lighting: Lighting,
     /// How often the picture's edge is halved.
     pub(super) halvings: u32,
@@ -31,6 +33,12 @@ pub(super) enum Sweep {
     Resolutions,
     /// One improvement at a time.
     Improvements,
+    /// The least rays for a quality (§5.4), for each decay factor.
+    Tuning,
+    /// Figures 3.7, 3.8 and 4.2 to 4.5: areas and the slackline from near by.
+    Views,
+    /// The faces of a light probe.
+    Probe,
 }
 
 impl Sweep {
@@ -41,6 +49,9 @@ impl Sweep {
             Self::Thresholds => "thresholds",
             Self::Resolutions => "resolutions",
             Self::Improvements => "improvements",
+            Self::Tuning => "tuning",
+            Self::Views => "views",
+            Self::Probe => "probe",
         }
     }
 }
@@ -92,6 +103,8 @@ pub(super) enum Goal {
     Tuned,
     /// As many rays as the adaptive renderer takes for the same picture.
     RaysOfAdaptive,
+    /// As near to the reference as the adaptive renderer comes.
+    QualityOfAdaptive,
     /// As near to the reference as the document's method comes with the tuned threshold.
     QualityOfErrorAware,
 }
@@ -102,6 +115,7 @@ impl Goal {
             Self::Given(_) => "given",
             Self::Tuned => "tuned",
             Self::RaysOfAdaptive => "rays of adaptive",
+            Self::QualityOfAdaptive => "quality of adaptive",
             Self::QualityOfErrorAware => "quality of error-aware",
         }
     }
@@ -112,10 +126,19 @@ impl Ask {
     pub(super) fn is_shown(&self) -> bool {
         let is_side_by_side = match self.method {
             Method::Adaptive { iterations } => iterations == 1,
-            Method::ErrorAware { goal, .. } => goal == Goal::Tuned || self.sweep == Sweep::Renderers,
+            Method::ErrorAware { goal, .. } => matches!(goal, Goal::Tuned | Goal::QualityOfErrorAware),
             Method::Plain | Method::Reference => true,
         };
-        is_side_by_side && matches!(self.sweep, Sweep::Renderers | Sweep::Resolutions)
+        is_side_by_side && !matches!(self.sweep, Sweep::Improvements | Sweep::Tuning)
+    }
+}
+
+impl Ask {
+    /// True of the picture by which figure 5.1 shows how the adaptive renderer goes about it.
+    pub(super) fn shows_variance(&self) -> bool {
+        let wanted =
+            (Sweep::Renderers, AreaKind::Desert, Lighting::Albedo, Method::Adaptive { iterations: 1 });
+        (self.sweep, self.area, self.lighting, self.method) == wanted
     }
 }
 
@@ -123,8 +146,9 @@ impl Ask {
 pub(super) fn asks(area: AreaKind) -> Vec<Ask> {
     let mut asks = Vec::new();
     let document = |decay, goal| Method::ErrorAware { variant: Variant::DOCUMENT, decay, goal };
-    let mut ask =
-        |sweep, lighting, halvings, method| asks.push(Ask { sweep, area, lighting, halvings, method });
+    let mut ask = |sweep, lighting, halvings, method| {
+        asks.push(Ask { sweep, area, viewpoint: Viewpoint::Above, lighting, halvings, method })
+    };
     for lighting in Lighting::ALL {
         let mut compare = |method| ask(Sweep::Renderers, lighting, 0, method);
         compare(Method::Reference);
@@ -146,6 +170,9 @@ pub(super) fn asks(area: AreaKind) -> Vec<Ask> {
         let lighting = Lighting::Albedo;
         for (decay, threshold) in DECAYS.iter().flat_map(|d| THRESHOLDS.iter().map(move |t| (*d, *t))) {
             ask(Sweep::Decays, lighting, 0, document(Decay::Given(decay), Goal::Given(threshold)));
+        }
+        for decay in DECAYS {
+            ask(Sweep::Tuning, lighting, 0, document(Decay::Given(decay), Goal::QualityOfAdaptive));
         }
         for threshold in THRESHOLDS {
             ask(Sweep::Thresholds, lighting, 0, document(Decay::Tuned, Goal::Given(threshold)));
@@ -169,6 +196,31 @@ pub(super) fn asks(area: AreaKind) -> Vec<Ask> {
                     Method::ErrorAware { variant, decay: Decay::Tuned, goal },
                 );
             }
+        }
+    }
+    asks.extend(parts_of(area));
+    asks
+}
+
+/// Pictures of parts of an area, and of a light probe.
+fn parts_of(area: AreaKind) -> Vec<Ask> {
+    let mut asks = Vec::new();
+    let mut ask = |sweep, viewpoint, method| {
+        asks.push(Ask { sweep, area, viewpoint, lighting: Lighting::Albedo, halvings: 0, method });
+    };
+    for viewpoint in [Viewpoint::Overview, Viewpoint::Near, Viewpoint::East] {
+        ask(Sweep::Views, viewpoint, Method::Reference);
+    }
+    let tuned = |variant| Method::ErrorAware { variant, decay: Decay::Tuned, goal: Goal::Tuned };
+    if area == AreaKind::Forest {
+        for method in [Method::Reference, Method::Plain, tuned(Variant::DOCUMENT)] {
+            ask(Sweep::Views, Viewpoint::Slackline, method);
+        }
+    }
+    for face in Viewpoint::FACES {
+        let adaptive = Method::Adaptive { iterations: 1 };
+        for method in [Method::Reference, Method::Plain, adaptive, tuned(Variant::DOCUMENT)] {
+            ask(Sweep::Probe, face, method);
         }
     }
     asks

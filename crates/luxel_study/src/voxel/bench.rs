@@ -8,6 +8,7 @@ use luxel_lod::{
 
 use super::ask::Variant;
 use super::land::{Land, LitLand};
+use super::viewpoint::Viewpoint;
 use crate::ssim::ssim;
 
 /// The variance that counts as 1 for the adaptive renderer in all areas: with it the four need about as many rays for a
@@ -76,8 +77,14 @@ impl Shot {
 }
 
 impl<'a> Bench<'a> {
-    pub(super) fn new(tables: &'a Tables, land: &Land, lit: &'a LitLand<'a>, halvings: u32) -> Self {
-        let view = land.view(halvings);
+    pub(super) fn new(
+        tables: &'a Tables,
+        land: &Land,
+        lit: &'a LitLand<'a>,
+        viewpoint: Viewpoint,
+        halvings: u32,
+    ) -> Self {
+        let view = land.view(viewpoint, halvings);
         let reference = Shot::take(|| reference(&lit.octree(), &view));
         Self { tables, lit, view, reference }
     }

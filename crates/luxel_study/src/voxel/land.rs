@@ -6,6 +6,7 @@ use luxel_accel::{Svo, SvoVoxel, build_svo};
 use luxel_lod::{Contrast, Octree, Sun, View, lit_by};
 use luxel_scene::{AREA_EXTENT, Area, AreaKind, Material, VoxelGrid, cache_folder};
 
+use super::viewpoint::Viewpoint;
 use crate::StudyError;
 
 /// How far above the mean ground the camera stands, in metres: high enough for about a fifth of the picture to look beyond
@@ -54,7 +55,11 @@ impl Lighting {
 pub(super) struct Land {
     pub(super) svo: Svo,
     pub(super) voxels: u64,
-    view: View,
+    /// The view from above.
+    above: View,
+    /// Height of the mean ground, in voxels.
+    ground: f32,
+    size: u32,
 }
 
 /// An area under one lighting.
@@ -91,14 +96,15 @@ impl Land {
         let voxels: Vec<SvoVoxel> = grid.voxels.iter().map(voxel).collect();
         let svo = build_svo(&voxels, UVec3::splat(size))?;
         let middle = 0.5 * size as f32;
-        let eye = Vec3::new(middle, mean_height(&grid) + ABOVE_GROUND / AREA_EXTENT * size as f32, middle);
-        let view = View::down(eye, FULL_SIZE * size / FULL_VOXELS);
-        Ok(Some(Self { svo, voxels: voxels.len() as u64, view }))
+        let ground = mean_height(&grid);
+        let eye = Vec3::new(middle, ground + ABOVE_GROUND / AREA_EXTENT * size as f32, middle);
+        let above = View::down(eye, FULL_SIZE * size / FULL_VOXELS);
+        Ok(Some(Self { svo, voxels: voxels.len() as u64, above, ground, size }))
     }
 
-    /// The picture from above, its edge halved as often.
-    pub(super) fn view(&self, halvings: u32) -> View {
-        self.view.resized(halvings)
+    /// The picture from a viewpoint, its edge halved as often.
+    pub(super) fn view(&self, viewpoint: Viewpoint, halvings: u32) -> View {
+        viewpoint.view(&self.above, self.ground, self.size).resized(halvings)
     }
 
     /// The light of one time of day.

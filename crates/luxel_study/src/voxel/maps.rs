@@ -1,6 +1,7 @@
 //! Pictures of the page: what a renderer shows, how many rays each pixel took, and how fine it went.
 use luxel_engine::output::Picture as Bytes;
-use luxel_lod::Pixel;
+use luxel_geom::srgb::srgb_encode;
+use luxel_lod::{Pixel, VarianceScale, luminance, variances};
 
 use super::bench::Shot;
 use crate::StudyError;
@@ -8,6 +9,8 @@ use crate::kit::picture::png;
 
 /// Rays of a pixel that are shown as white.
 const MOST_RAYS: f32 = 21.0;
+/// Differences are shown as many times as large.
+const DIFFERENCE_GAIN: f64 = 8.0;
 
 /// What a picture shows.
 pub(super) fn picture_png(shot: &Shot) -> Result<String, StudyError> {
@@ -26,6 +29,24 @@ pub(super) fn levels_png(shot: &Shot, view_level: u32) -> Result<String, StudyEr
         let below = view_level.checked_sub(u32::from(pixel.finest));
         below.map_or(0.0, |below| (below as f32 + 1.0) / 3.0)
     })
+}
+
+/// Eight times what a picture is off its reference.
+pub(super) fn difference_png(shot: &Shot, reference: &Shot) -> Result<String, StudyError> {
+    let byte = |a: f64, b: f64| (255.0 * DIFFERENCE_GAIN * (a - b).abs()).round().min(255.0) as u8;
+    let pairs = shot.codes.iter().zip(&reference.codes);
+    encoded(shot, pairs.map(|(a, b)| [0, 1, 2].map(|channel| byte(a[channel], b[channel]))).collect())
+}
+
+/// Luminances as they are seen.
+pub(super) fn luminance_png(shot: &Shot) -> Result<String, StudyError> {
+    mapped(shot, |pixel| srgb_encode(luminance(pixel.rgb)))
+}
+
+/// Variances that the adaptive renderer goes by; white is 1.
+pub(super) fn variance_png(shot: &Shot, scale: VarianceScale) -> Result<String, StudyError> {
+    let values = variances(&shot.picture).into_iter();
+    encoded(shot, values.map(|value| [(255.0 * (value / scale.0).min(1.0)).round() as u8; 3]).collect())
 }
 
 fn mapped(shot: &Shot, value: impl Fn(&Pixel) -> f32) -> Result<String, StudyError> {

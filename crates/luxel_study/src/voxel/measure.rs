@@ -6,9 +6,9 @@ use luxel_scene::AreaKind;
 
 use super::Plan;
 use super::ask::{Ask, Decay, Goal, Method, Sweep, Variant, asks};
-use super::bench::{Bench, Shot, Tables};
+use super::bench::{Bench, Shot, Tables, VARIANCE_SCALE};
 use super::land::{Land, Lighting};
-use super::maps::{levels_png, picture_png, rays_png};
+use super::maps::{difference_png, levels_png, luminance_png, picture_png, rays_png, variance_png};
 use super::record::{FORMAT, Run, STUDY};
 use super::search::{least_that_reaches, nearest};
 use crate::kit::measured::rounded;
@@ -74,21 +74,24 @@ impl Work<'_, '_> {
                 continue;
             }
             let lit = land.lit(lighting);
-            for halvings in 0..4 {
-                let mut bench = None;
-                for ask in asked.iter().filter(|ask| ask.halvings == halvings) {
-                    let fraction = made + (to - made) * f64::from(done) / missing.len() as f64;
-                    if self.tell(fraction, &what(ask)).is_break() {
-                        return Ok(ControlFlow::Break(()));
-                    }
-                    let bench = bench.get_or_insert_with(|| Bench::new(tables, &land, &lit, halvings));
-                    let Some(run) = self.run(ask, bench, &land)? else {
-                        return Ok(ControlFlow::Break(()));
-                    };
-                    (self.keep)(&run)?;
-                    self.runs.push(run);
-                    done += 1;
+            let mut kept = None;
+            for ask in asked {
+                let fraction = made + (to - made) * f64::from(done) / missing.len() as f64;
+                if self.tell(fraction, &what(ask)).is_break() {
+                    return Ok(ControlFlow::Break(()));
                 }
+                let spot = (ask.viewpoint, ask.halvings);
+                let bench = match kept.take() {
+                    Some((at, bench)) if at == spot => bench,
+                    _ => Bench::new(tables, &land, &lit, ask.viewpoint, ask.halvings),
+                };
+                let (_, bench) = kept.insert((spot, bench));
+                let Some(run) = self.run(ask, bench, &land)? else {
+                    return Ok(ControlFlow::Break(()));
+                };
+                (self.keep)(&run)?;
+                self.runs.push(run);
+                done += 1;
             }
         }
         Ok(ControlFlow::Continue(()))
@@ -144,9 +147,15 @@ impl Work<'_, '_> {
                 };
                 nearest(HIGHEST_THRESHOLD, rays, &mut rays_at)
             }
-            Goal::QualityOfErrorAware => {
-                let wanted =
-                    Method::ErrorAware { variant: Variant::DOCUMENT, decay: Decay::Tuned, goal: Goal::Tuned };
+            Goal::QualityOfAdaptive | Goal::QualityOfErrorAware => {
+                let wanted = match goal {
+                    Goal::QualityOfAdaptive => Method::Adaptive { iterations: 1 },
+                    _ => Method::ErrorAware {
+                        variant: Variant::DOCUMENT,
+                        decay: Decay::Tuned,
+                        goal: Goal::Tuned,
+                    },
+                };
                 let quality = self.same_picture(ask, wanted).and_then(|run| run.psnr).unwrap_or(0.0);
                 let mut quality_at = |threshold| {
                     is_stopped |= self.poll(ask).is_break();
@@ -228,6 +237,7 @@ fn asked(ask: &Ask) -> Run {
         format: FORMAT,
         sweep: ask.sweep.name().to_owned(),
         area: ask.area.name().to_owned(),
+        view: ask.viewpoint.name().to_owned(),
         lighting: ask.lighting.name().to_owned(),
         halvings: ask.halvings,
         method: method.to_owned(),
@@ -270,6 +280,13 @@ fn fill(run: &mut Run, ask: &Ask, bench: &Bench<'_>, shot: &Shot) -> Result<(), 
         run.picture_png = Some(picture_png(shot)?);
         run.rays_png = Some(rays_png(shot)?);
         run.levels_png = Some(levels_png(shot, bench.view().level)?);
+        let is_reference = ask.method == Method::Reference;
+        run.difference_png = (!is_reference).then(|| difference_png(shot, &bench.reference)).transpose()?;
+    }
+    if ask.shows_variance() {
+        let first = bench.plain();
+        run.luminance_png = Some(luminance_png(&first)?);
+        run.variance_png = Some(variance_png(&first, VARIANCE_SCALE)?);
     }
     Ok(())
 }

@@ -15,6 +15,8 @@ mod record;
 mod search;
 #[cfg(test)]
 mod tests;
+mod thesis;
+mod viewpoint;
 
 use std::path::Path;
 use std::time::Instant;

@@ -45,6 +45,8 @@ pub struct Run {
     pub voxels: u64,
     /// Nodes of the octree.
     pub nodes: u64,
+    /// Where the picture is taken from: `above`, `overview`, `near`, `east`, `slackline`, `face +x` and so on.
+    pub view: String,
     /// `albedo` or `time 0` to `time 3`.
     pub lighting: String,
     /// How often the picture's edge was halved.
@@ -55,7 +57,8 @@ pub struct Run {
     pub method: String,
     /// Which improvements: names with `+` between; empty for none.
     pub variant: String,
-    /// What the threshold was chosen for: `given`, `tuned` on the desert, `rays of adaptive`, `quality of error-aware`; empty where there is none.
+    /// What the threshold was chosen for: `given`, `tuned` on the desert, `rays of adaptive`, `quality of adaptive`,
+    /// `quality of error-aware`; empty where there is none.
     pub goal: String,
     /// The decay factor that was asked for, if it was given.
     pub asked_decay: Option<f64>,
@@ -95,15 +98,22 @@ pub struct Run {
     pub rays_png: Option<String>,
     /// The finest level of each pixel likewise.
     pub levels_png: Option<String>,
+    /// Eight times the difference from the reference likewise.
+    pub difference_png: Option<String>,
+    /// Of the adaptive renderer's first ray a pixel: luminances likewise.
+    pub luminance_png: Option<String>,
+    /// Of the same: normalised variances likewise.
+    pub variance_png: Option<String>,
 }
 
 impl Run {
     /// What is measured once in a study: everything that was asked for.
     pub(super) fn key(&self) -> String {
         format!(
-            "{} {} {} {} {} {} {} {:?} {:?} {}",
+            "{} {} {} {} {} {} {} {} {:?} {:?} {}",
             self.sweep,
             self.area,
+            self.view,
             self.lighting,
             self.halvings,
             self.method,
@@ -141,7 +151,14 @@ impl Run {
         if !(self.ssim.is_finite() && self.ssim <= 1.0 && self.threshold.is_finite()) {
             return Err("ssim or threshold is out of range".to_owned());
         }
-        let pictures = [&self.picture_png, &self.rays_png, &self.levels_png];
+        let pictures = [
+            &self.picture_png,
+            &self.rays_png,
+            &self.levels_png,
+            &self.difference_png,
+            &self.luminance_png,
+            &self.variance_png,
+        ];
         if pictures.into_iter().flatten().any(|text| !is_png(text)) {
             return Err("a picture is not a PNG file in base64".to_owned());
         }
@@ -174,6 +191,10 @@ impl Filed for VoxelStudy {
     }
 
     fn for_table(run: &Run) -> Run {
-        Run { picture_png: None, rays_png: None, levels_png: None, ..run.clone() }
+        let mut run = run.clone();
+        run.picture_png = None;
+        (run.rays_png, run.levels_png, run.difference_png) = (None, None, None);
+        (run.luminance_png, run.variance_png) = (None, None);
+        run
     }
 }
