@@ -8,7 +8,7 @@ fn plan() -> Plan {
     Plan { areas: vec![AreaKind::Desert, AreaKind::Mountain], size: 64, quick: true }
 }
 
-fn studied(out: &Path, most_events: usize) -> Studied {
+pub(super) fn small_study(out: &Path, most_events: usize) -> Studied {
     let mut events = 0;
     let mut observer = |_: &StudyEvent| {
         events += 1;
@@ -25,11 +25,11 @@ fn timeless(runs: &[Run]) -> Vec<Run> {
 #[test]
 fn a_study_that_was_cut_short_goes_on_and_ends_as_one_that_was_not() {
     let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
-    let whole = studied(folders[0].path(), usize::MAX);
+    let whole = small_study(folders[0].path(), usize::MAX);
     assert!(whole.is_complete && whole.runs.len() > 100, "{}", whole.runs.len());
-    let first = studied(folders[1].path(), 200);
+    let first = small_study(folders[1].path(), 200);
     assert!(!first.is_complete && !first.runs.is_empty() && first.runs.len() < whole.runs.len());
-    let second = studied(folders[1].path(), usize::MAX);
+    let second = small_study(folders[1].path(), usize::MAX);
     assert!(second.is_complete);
     assert!(second.runs[..first.runs.len()] == first.runs, "something was measured twice");
     assert!(timeless(&second.runs) == timeless(&whole.runs), "other pictures");
@@ -44,7 +44,7 @@ fn a_study_that_was_cut_short_goes_on_and_ends_as_one_that_was_not() {
 #[test]
 fn damaged_lines_are_named() {
     let folder = tempfile::tempdir().unwrap();
-    let runs = studied(folder.path(), 40).runs;
+    let runs = small_study(folder.path(), 40).runs;
     let list = folder.path().join("list.jsonl");
     let good = serde_json::to_string(&runs[0]).unwrap();
     let damages = [
