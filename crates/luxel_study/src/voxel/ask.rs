@@ -126,7 +126,9 @@ impl Ask {
     pub(super) fn is_shown(&self) -> bool {
         let is_side_by_side = match self.method {
             Method::Adaptive { iterations } => iterations == 1,
-            Method::ErrorAware { goal, .. } => matches!(goal, Goal::Tuned | Goal::QualityOfErrorAware),
+            Method::ErrorAware { goal, .. } => {
+                matches!(goal, Goal::Tuned | Goal::QualityOfErrorAware) || self.sweep == Sweep::Thresholds
+            }
             Method::Plain | Method::Reference => true,
         };
         is_side_by_side && !matches!(self.sweep, Sweep::Improvements | Sweep::Tuning)

@@ -57,9 +57,9 @@ mod tests {
     fn psnr_and_rmse_say_the_same() {
         for Pair { adaptive, error_aware } in pairs() {
             for Quality { psnr, rmse, .. } in [adaptive.quality, error_aware.quality] {
-                // RMSE is given to 1e-5.
+                // RMSE is given to 1e-5, sometimes rounded and sometimes cut off.
                 let psnr_of = |rmse: f64| -20.0 * rmse.log10();
-                let range = psnr_of(rmse + 0.6e-5)..psnr_of(rmse - 0.6e-5);
+                let range = psnr_of(rmse + 1.01e-5)..psnr_of(rmse - 0.6e-5);
                 assert!(range.contains(&psnr), "{psnr} dB, {rmse}");
             }
         }
