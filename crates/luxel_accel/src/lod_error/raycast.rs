@@ -54,7 +54,6 @@ fn meets(low: DVec3, edge: f64, origin: DVec3, direction: DVec3) -> bool {
 
 /// `edge`² places in the unit square, one in each cell of a grid of `edge` by `edge`, and one in each of `edge`² columns
 /// and rows.
-#[must_use]
 pub fn multi_jittered(edge: u32, seed: [u32; 2]) -> impl Iterator<Item = DVec2> {
     let [columns, rows] = [0, 1].map(|which| shuffled(edge, [seed[0], seed[1], which]));
     let width = f64::from(edge);
